@@ -2,8 +2,7 @@
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
-/// An angle of any size (two full turns differ from none), made from degrees or radians and stored
-/// in radians.
+/// An angle of any size (two full turns are not the same as none), made from degrees or radians and stored in radians.
 ///
 /// ```
 /// use mode13h::Angle;

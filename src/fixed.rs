@@ -25,14 +25,14 @@ pub(crate) const HAS_F64: bool = cfg!(any(
 pub(crate) const ROUND_MAGIC: f64 = 6_755_399_441_055_744.0;
 const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 
-/// Whether this is a size-optimised build (`capi/build`), for machines with little memory: fewer
-/// loops draw the same bytes, and long functions are not inlined. It lacks the shadings
-/// [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and
-/// [`Float`](crate::raster::Interpolation::Float), which draw as `Gouraud` does.
+/// Whether this is a size-optimised build (`capi/build`), for machines with little memory: it draws the same bytes with
+/// fewer loops, and long functions are not inlined. It lacks the shadings
+/// [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and [`Float`](crate::raster::Interpolation::Float),
+/// which draw as `Gouraud` does.
 pub(crate) const IS_SMALL: bool = cfg!(mode13h_small);
 
-/// Whether code size matters: in a size-optimised build, and in WebAssembly, which is loaded over a
-/// network. Loops that would save only a few per cent of the time are then left out.
+/// Whether code size matters: in a size-optimised build, and in WebAssembly, which is loaded over a network. Loops that
+/// would save only a few per cent of the time are then left out.
 pub(crate) const IS_COMPACT: bool = IS_SMALL || cfg!(target_family = "wasm");
 
 internal! {
@@ -45,7 +45,7 @@ fn floor_of_wide(n: i128, d: i128) -> i64 {
 }
 }
 
-/// The integer nearest to a value within ±2⁵¹, ties to even; for other values the result is arbitrary.
+/// The integer nearest to a value within ±2⁵¹, with ties to even; for other values the result is arbitrary.
 ///
 /// Use only where [`HAS_F64`]. SSE2 has no rounding instruction, and a cast to i64 would saturate, at the cost of two
 /// comparisons.
@@ -54,8 +54,8 @@ pub(crate) fn nearest_whole(x: f64) -> i64 {
     (x + ROUND_MAGIC).to_bits().wrapping_sub(ROUND_MAGIC.to_bits()) as i64
 }
 
-/// The integer part of a value of at least 0 and below 2³¹; for other values the result is arbitrary. A cast would
-/// saturate, which keeps the compiler from vectorising it.
+/// The integer part of a value in [0, 2³¹); for other values the result is arbitrary. A cast would saturate, which
+/// keeps the compiler from vectorising it.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn whole_part(x: f64) -> i32 {
@@ -98,7 +98,7 @@ impl I24F8 {
         self.0
     }
 
-    /// `floor(256·pixels + ½)`, exactly: the one rounding that a projected coordinate goes through.
+    /// `floor(256·pixels + ½)`, exactly: the only rounding that a projected coordinate undergoes.
     ///
     /// Returns `None` if `pixels` is not finite or the result does not fit in 32 bits.
     ///
@@ -257,12 +257,11 @@ impl I16F16 {
         Self((whole as i32) << 16)
     }
 
-    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or does not fit. The renderer calls it
-    /// when it converts a mesh, and a few times per frame for the camera and the lights, never per
-    /// vertex.
+    /// `floor(65,536·x + ½)`, or `None` if `x` is not finite or the result does not fit. The renderer calls it when it
+    /// converts a mesh, and a few times per frame for the camera and the lights, never per vertex.
     #[must_use]
     pub fn round_from_f64(x: f64) -> Option<Self> {
-        // Rounds a number 256 times as large to 1/256; the product is exact.
+        // Rounding 256·x to 1/256 rounds x to 1/65,536; the product is exact.
         I24F8::round_from_f64(x * 256.0).map(|units| Self(units.0))
     }
 }

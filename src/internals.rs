@@ -89,9 +89,9 @@ use crate::render::{RenderError, Renderer, Screen, Stats};
 pub use crate::scene::object::turn;
 use crate::scene::{Object, Scene, Shared};
 
-/// Passes every triangle that [`Renderer::draw`] would draw to `visit`, in the order of
-/// [`Renderer::for_each_triangle`], with everything that the raster would get. Returns the work
-/// counts, except those of the raster. Nothing is drawn, and later frames are unaffected.
+/// Calls `visit` for every triangle that [`Renderer::draw`] would draw, in the order of
+/// [`Renderer::for_each_triangle`], with everything that the raster would receive. Returns the work counts, except
+/// those of the raster. Nothing is drawn, and later frames are unaffected.
 ///
 /// # Errors
 /// The errors of [`Renderer::draw`], before the first triangle.

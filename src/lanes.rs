@@ -1,7 +1,7 @@
 //! Batches of eight values, in which light, vertices and pixels are computed.
 
-/// The number of pixels or vertices in a batch: a few vectors of a processor, but no more than
-/// short spans have.
+/// The number of pixels or vertices in a batch: enough for one or more of the processor's vectors, but no more pixels
+/// than a short span has.
 pub const LANES: usize = 8;
 
 /// The index of each lane.
@@ -30,7 +30,7 @@ macro_rules! each {
 }
 pub(crate) use each;
 
-/// The blocks of eight in which the first `n` bytes lie, as far as there is room for whole ones.
+/// The blocks of eight bytes that hold the first `n` bytes; a last block that would not fit is left out.
 #[inline(always)]
 pub(crate) fn blocks(bytes: &mut [u8], n: usize) -> impl Iterator<Item = &mut Lanes<u8>> {
     bytes.as_chunks_mut().0.iter_mut().take(n.div_ceil(LANES))

@@ -58,7 +58,7 @@ pub(crate) use SSE2 as BASELINE;
 #[cfg(simd_x86_64)]
 #[inline(always)]
 const fn words_of([low, high]: [i64; 2]) -> [u16; 8] {
-    // Shifts, so that nothing goes through memory.
+    // Shifts, so that the words do not go through memory.
     [
         low as u16,
         (low >> 16) as u16,
@@ -103,7 +103,7 @@ pub(crate) enum Level {
 }
 
 impl Level {
-    /// Its name, as in `--stats` and in records.
+    /// The level's name, as in `--stats` and in records.
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",
@@ -193,15 +193,15 @@ impl Avx512 {
     }
 }
 
-/// Functions, one for each level, that call one generic over [`Lanes8`], which is inlined and so compiled for each
-/// level.
+/// Defines a function that dispatches to one copy for each level. Each copy calls a function generic over [`Lanes8`],
+/// which is inlined and so compiled for that level.
 ///
 /// `fn name[parameters][their names](arguments) -> result = generic;` defines a function whose first argument is the
 /// level.
 ///
 /// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }` is compiled only for AVX2 and for
-/// the target's baseline. Functions that the body calls must be inlined. (It takes a body rather than a closure: one of
-/// 3,000 instructions was not inlined, and so compiled for the baseline alone.)
+/// the target's baseline. Functions that the body calls must be inlined. (It takes a body rather than a closure,
+/// because a closure of 3,000 instructions was not inlined, and so was compiled for the baseline alone.)
 macro_rules! compiled_for_each_level {
     ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
         ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident;) => {

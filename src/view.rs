@@ -40,7 +40,7 @@ impl Screen {
     /// 320 × 200, with 5:6 pixels.
     pub const MODE_13H: Self = Self { width: 320, height: 200, pixel_aspect: (5, 6) };
 
-    /// Checks that it has pixels, and that they have a shape.
+    /// Checks that the screen's size and pixel aspect ratio are above 0.
     pub(crate) fn check(self) -> Result<(), &'static str> {
         let Self { width, height, pixel_aspect: (pixel_width, pixel_height) } = self;
         match [width, height, pixel_width, pixel_height].contains(&0) {
@@ -49,7 +49,7 @@ impl Screen {
         }
     }
 
-    /// fx and fy, in pixels; the field of view is the vertical one.
+    /// fx and fy, in pixels, for a vertical field of view.
     pub(crate) fn focal_lengths(self, field_of_view: Angle) -> [f64; 2] {
         let (pixel_width, pixel_height) = self.pixel_aspect;
         let fy = f64::from(self.height) / 2.0 / libm::tan(field_of_view.to_radians() / 2.0);
@@ -112,8 +112,8 @@ impl View {
 }
 
 impl View {
-    /// The position of a point of the world on the screen, in pixels, and its distance in front of the eye; `None` if
-    /// it is nearer than the near distance.
+    /// The screen position of a world point, in pixels, and its distance in front of the eye; `None` if it is nearer
+    /// than the near distance.
     pub(crate) fn on_screen(&self, world: Vec3) -> Option<[f64; 3]> {
         let world = widen(world);
         let from_eye = [0, 1, 2].map(|i| world[i] - self.eye[i]);
@@ -123,7 +123,8 @@ impl View {
         (distance >= f64::from(self.near)).then(|| [cx + x / distance, cy + y / distance, distance])
     }
 
-    /// A direction of the world as a unit vector in eye space (right, up, towards the eye); `None` for the zero vector.
+    /// Transforms a world direction to a unit vector in eye space (right, up, towards the eye); `None` for the zero
+    /// vector.
     pub(crate) fn direction_to_eye(&self, world: Vec3) -> Option<Vec3> {
         let world = unit(widen(world))?;
         let [x, y, z] = self.axes.map(|axis| dot(axis, world) as f32);
@@ -134,7 +135,8 @@ impl View {
 impl Camera {
     /// Projects a point of the scene onto the screen, for labels, crosshairs and flares: x and y in pixels from the
     /// upper left corner, and the distance in front of the eye, along the view. The point may be off the screen. `None`
-    /// if it is nearer than the near distance, behind the eye, or not finite, or if the camera or the screen is invalid.
+    /// if it is nearer than the near distance, behind the eye, or not finite, or if the camera or the screen is
+    /// invalid.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -156,10 +158,10 @@ impl Camera {
 }
 
 impl Camera {
-    /// The direction from the eye through a point of the screen, as a unit vector, to find out what is there: the
-    /// opposite of [`project`](Self::project). The point is in pixels from the upper left corner, and may be off the
-    /// screen; the middle of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite, or the camera or
-    /// the screen is invalid.
+    /// The direction from the eye through a point of the screen, as a unit vector, for picking: the inverse of
+    /// [`project`](Self::project). The point is in pixels from the upper left corner, and may be off the screen; the
+    /// centre of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite, or the camera or the screen is
+    /// invalid.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -183,19 +185,19 @@ impl Camera {
     }
 }
 
-/// The whole transform of an object, from its mesh to the screen.
+/// The whole transform of an object, from object space to the screen.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ObjectView {
     exact: (Matrix, Row),
-    /// The transform of `exact` in f32; `None` if the object reaches so far that f32 could overflow.
+    /// The transform of `exact` in f32; `None` if the object extends so far that f32 could overflow.
     fast: Option<(Mat3, Vec3)>,
     centre: (f32, f32),
     near: f32,
-    /// The rotation alone, from the object's directions to the world's.
+    /// The rotation alone, from object space to the world.
     turn: Matrix,
-    /// The rotation from the object's directions to eye space: right, up, towards the eye.
+    /// The rotation from object space to eye space: right, up, towards the eye.
     to_eye: Matrix,
-    /// The eye, in the object's own space.
+    /// The eye, in object space.
     eye: Row,
     position: Row,
     pivot: Row,
@@ -203,17 +205,16 @@ pub(crate) struct ObjectView {
     size: (f64, f64),
 }
 
-/// The region of space and screen where an object may be visible after near clipping: slightly
-/// larger than what it covers.
+/// The region of space and screen where an object may be visible after near clipping: slightly larger than the object.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ScreenBounds {
     /// The least distance along the view; may be negative.
     pub(crate) nearest: f64,
     /// The greatest distance along the view.
     pub(crate) farthest: f64,
-    /// Whether some of it may be nearer than the near plane.
+    /// Whether part of it may be nearer than the near plane.
     pub(crate) crosses_near: bool,
-    /// Whether some of it may be projected beyond the screen's edges.
+    /// Whether part of it may be projected beyond the screen's edges.
     pub(crate) leaves_screen: bool,
     /// The part of the screen where it may be.
     pub(crate) seen: Rect,
@@ -286,7 +287,7 @@ impl ObjectView {
         this
     }
 
-    /// Transforms a point of the world into the object's own space; for an object of scale 0, returns the pivot.
+    /// Transforms a world point to object space; for an object of scale 0, returns the pivot.
     pub(crate) fn point_in_object(&self, world: [f64; 3]) -> [f64; 3] {
         if self.scale <= 0.0 {
             return self.pivot;
@@ -297,12 +298,12 @@ impl ObjectView {
         })
     }
 
-    /// The eye in the object's own space.
+    /// The eye in object space.
     pub(crate) fn eye(&self) -> [f64; 3] {
         self.eye
     }
 
-    /// The position of the object's pivot in the world.
+    /// The world position of the object's pivot.
     pub(crate) fn position(&self) -> Vec3 {
         Vec3::from_array(self.position.map(|c| c as f32))
     }
@@ -312,12 +313,12 @@ impl ObjectView {
         self.scale
     }
 
-    /// The matrix from the object's directions to eye space: right, up, towards the eye.
+    /// The matrix from object space to eye space, for directions: right, up, towards the eye.
     pub(crate) fn directions_to_eye(&self) -> Mat3 {
         Mat3::from_cols_array_2d(&self.to_eye.map(|row| row.map(|c| c as f32))).transpose()
     }
 
-    /// The bounds, in depth and on the screen, of the box `bounds` of the object's mesh.
+    /// The bounds, in depth and on the screen, of a box in object space.
     pub(crate) fn reach(&self, bounds: Bounds) -> ScreenBounds {
         let (matrix, offset) = &self.exact;
         let (min, max) = (widen(bounds.min), widen(bounds.max));
@@ -390,7 +391,7 @@ impl ObjectView {
         Vertex::new(at(x), at(y), U8F8::default(), self.depth(w)).unwrap_or_default()
     }
 
-    /// Transforms a direction of the world into a unit vector in the object's own space; `None` for the zero vector.
+    /// Transforms a world direction to a unit vector in object space; `None` for the zero vector.
     pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
         let [x, y, z] = self.wide_direction_in_object(world)?;
         Some(Vec3::new(x as f32, y as f32, z as f32))
@@ -415,17 +416,17 @@ impl ObjectView {
         self.near
     }
 
-    /// Returns whether a vertex is at least as far away as the near plane, as clipping sees it.
+    /// Returns whether a vertex is at least as far away as the near plane, by the test that clipping uses.
     pub(crate) fn is_far_enough(&self, p: Vec3) -> bool {
         self.homogeneous(p).w >= f64::from(self.near)
     }
 
-    /// Returns whether no part of a triangle beyond the near plane is on the screen: all corners lie to one side of it,
-    /// by more than a pixel.
+    /// Returns whether the part of a triangle beyond the near plane is off the screen: all corners lie to one side of
+    /// the screen, by more than a pixel.
     ///
-    /// With f = x + (cx + 1)·w, a point is a pixel left of the screen where f < 0. Clipping finds its points as means of
-    /// two corners in f64, at most five times one after the other, so their f is off by less than 2⁻⁴⁰ of the greatest
-    /// term of a corner; and rounding to 1/256 pixel moves them by less than the pixel.
+    /// With f = x + (cx + 1)·w, a point is a pixel left of the screen where f < 0. Clipping interpolates its points
+    /// between two corners in f64, at most five times in succession, so their f is off by less than 2⁻⁴⁰ of a corner's
+    /// largest term; and rounding to 1/256 pixel moves them by less than the pixel.
     pub(crate) fn is_off_screen(&self, corners: &[Homogeneous; 3]) -> bool {
         const SLACK: f64 = 1.0 / (1_u64 << 40) as f64;
         let (cx, cy) = self.centre();
@@ -441,8 +442,7 @@ impl ObjectView {
             || all_beyond(|corner| -corner.y, height - cy + 1.0)
     }
 
-    /// The gradient of the distance along the view, in the object's own space, and the distance of
-    /// its origin.
+    /// The gradient of the distance along the view, in object space, and the distance of its origin.
     pub(crate) fn along_view(&self) -> ([f32; 3], f32) {
         let ([.., row], [.., offset]) = &self.exact;
         (row.map(|c| c as f32), *offset as f32)

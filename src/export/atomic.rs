@@ -33,7 +33,7 @@ pub enum ExportErrorKind {
     MissingDirectory,
     /// A path that was used as a directory is a file.
     NotADirectory,
-    /// The directory exists, but no file can be created in it: only the system creates files there.
+    /// The directory exists, but no file can be created in it, because only the system creates files there.
     NoNewFiles,
     /// The name is that of a directory, or ends like one.
     IsDirectory,
@@ -63,7 +63,7 @@ impl ExportErrorKind {
         }
     }
 
-    /// Makes an error from writing into an open file. A "not found" then says nothing about the directory.
+    /// Makes an error from writing into an open file. Here, "not found" says nothing about the directory.
     pub fn from_writing(error: io::Error) -> ExportErrorKind {
         match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => ExportErrorKind::DiskFull,
@@ -110,15 +110,15 @@ impl Error for ExportError {
 ///
 /// `write` fills a temporary file in the same directory (`.mode13h-` and two numbers), which is flushed to the disk and
 /// then renamed to `path`. If `write` fails or panics, or the disk fails, the temporary file is removed and whatever
-/// was at `path` before is unchanged. Symbolic links are followed, except that one whose target does not exist is itself
-/// replaced by the file. The permissions of a replaced file are preserved; a read-only file is an error, although a
-/// rename could replace it. An existing path that is not a regular file (a device, a pipe) is written to directly, since
-/// renaming would replace it.
+/// was at `path` before is unchanged. Symbolic links are followed, except that one whose target does not exist is
+/// itself replaced by the file. The permissions of a replaced file are preserved; a read-only file is an error,
+/// although a rename could replace it. An existing path that is not a regular file (a device, a pipe) is written to
+/// directly, since renaming would replace it.
 ///
 /// # Errors
 ///
-/// [`ExportError`], with the path and the cause. Of the errors that `write` returns, only a full disk is distinguished;
-/// all others are [`ExportErrorKind::Io`].
+/// [`ExportError`], with the path and the cause. If `write` returns an error other than a full disk, the cause is
+/// [`ExportErrorKind::Io`].
 ///
 /// ```
 /// use std::io::Write as _;

@@ -140,7 +140,8 @@ impl<'a> Scaled<'a> {
     }
 
     /// Pixels per unit of length, across and down, in lowest terms, for `pHYs`. The picture keeps its aspect ratio at
-    /// any size: 320 × 200 pixels of 5:6 are 6 across to 5 down, and 1600 × 1200 are square.
+    /// any size: for 320 × 200 pixels of shape 5:6 the density is 6 across to 5 down, and the pixels of 1600 × 1200 are
+    /// square.
     pub fn density(&self) -> (u32, u32) {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;

@@ -1,8 +1,7 @@
 //! Angles and their sines, from a table.
 //!
-//! A binary angle counts 1/65,536 turns in 16 bits, so a full turn wraps to 0 by itself and no angle ever needs
-//! reducing. A quarter wave of 16,385 sines would be 64 KiB; two short tables give the same by the addition theorem,
-//!
+//! A binary angle counts 1/65,536 turns in 16 bits, so a full turn wraps to 0 and no angle ever needs range reduction.
+//! A quarter wave of 16,385 sines would take 64 KiB. Two short tables give the same by the addition theorem,
 //! ```text
 //! sin(a + b) = sin a · cos b + cos a · sin b       a: a 512th of a turn, b: less than that
 //! ```

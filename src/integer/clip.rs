@@ -1,7 +1,7 @@
 //! Clipping in homogeneous space, in wide integers: the near plane first, then the guard band.
 //!
-//! Corners have 12 more fractional bits than vertices: an intersection is rounded, and at the edge
-//! of the guard band, 4,096 pixels away, its rounding affects an edge across the whole picture.
+//! Corners have 12 more fractional bits than vertices: an intersection is rounded, and where it lies at the edge of the
+//! guard band, 4,096 pixels away, its rounding affects an edge across the whole picture.
 //!
 //! **Why nothing overflows i128.** Coordinates are at most 2³² · 2¹² = 2⁴⁴. A distance from a plane of the guard band
 //! is `a·W ± b·X` with a at most 2³¹ and b at most 2³²: below 2⁷⁷. An intersection multiplies it by a difference of
@@ -14,7 +14,7 @@ use crate::raster::clip::{Clipped, clip as clip_triangle};
 
 /// The number of extra bits of a corner compared with a vertex.
 const EXTRA: u32 = 12;
-/// The number of fractional bits of a parameter along an edge, and of a shade below its 8.8.
+/// The number of fractional bits of a parameter along an edge, and of a shade beyond its 8.8.
 const PARAMETER: u32 = 32;
 
 /// A corner of the polygon being clipped.
@@ -25,8 +25,8 @@ pub(super) struct Corner {
     w: i128,
     /// In 2⁻⁴⁰ shade.
     shade: i64,
-    /// The projected vertex, for a corner of the mesh that needs no clipping. It is passed through
-    /// unchanged, because neighbouring faces that need no clipping use the same vertex.
+    /// The projected vertex, for a corner of the mesh that needs no clipping. It is passed through unchanged, because
+    /// neighbouring faces that need no clipping use it, too.
     vertex: Option<Vertex>,
 }
 
@@ -55,8 +55,8 @@ impl Corner {
     }
 }
 
-/// The distance of a corner from a plane, 0 or more inside. For the guard band it is four times the distance times W,
-/// in 1/65,536 pixel.
+/// The distance of a corner from a plane, 0 or more inside. For the guard band, it is four times the distance in
+/// 1/65,536 pixel, times W.
 fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> i128 {
     let Corner { x, y, w, .. } = *corner;
     let limit = i128::from(ObjectView::LIMIT);
@@ -78,7 +78,7 @@ fn nearest(n: i128, d: i128) -> i128 {
     (2 * n + d).div_euclid(2 * d)
 }
 
-/// The intersection of an edge with a plane. `on_face`: shades are linear on the face in space rather than on the
+/// The intersection of an edge with a plane. If `on_face`, shades are linear on the face in space, otherwise on the
 /// screen.
 fn cut(
     view: &ObjectView,

@@ -31,10 +31,10 @@ impl Sun {
     }
 }
 
-/// Storage for a sun transformed into an object's space.
+/// Storage for a sun transformed into object space.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct ObjectSun {
-    /// The unit direction towards the light, in the object's own space.
+    /// The unit direction towards the light, in object space.
     towards: Vector,
     intensity: I16F16,
 }

@@ -146,8 +146,8 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         Ok(self)
     }
 
-    /// Marks each triangle that lies back to back with another, with one bit, 64 per word: these
-    /// are culled when they face away.
+    /// Marks each triangle that lies back to back with another with one bit, 64 per word. Marked triangles are culled
+    /// when they face away.
     #[must_use]
     pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
         self.twins = twins;
@@ -169,7 +169,7 @@ impl<'a, I: Index> FixedMesh<'a, I> {
         }
     }
 
-    /// Counts the vertices: a stage needs storage for this many.
+    /// Counts the vertices, as many as a stage needs storage for.
     pub(crate) fn vertices(&self) -> usize {
         self.positions.len()
     }
@@ -217,9 +217,8 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
     narrow_unit(cross(from_a(b), from_a(c)))
 }
 
-/// Averages the unit normals of the faces around each vertex, and normalises the sum. Otherwise
-/// vertices would be darkened, sharp corners most (the Hungarian tutorial's slip). A normal's
-/// length is within 2⁻¹⁶ of 1.
+/// Averages the unit normals of the faces around each vertex, and normalises the sum. Without that, vertices would be
+/// darkened, sharp corners most (the Hungarian tutorial's slip). A normal's length is within 2⁻¹⁶ of 1.
 ///
 /// A vertex whose faces' normals cancel gets that of its first face; one that no face with an area
 /// uses gets +z. Faces beyond the 32,767th around one vertex may be ignored.

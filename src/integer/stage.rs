@@ -102,8 +102,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
         Ok(Self { shading: shading.in_integers(), object, view, beams, lit })
     }
 
-    /// Passes the faces to be drawn to `triangle`, clipped where necessary. Back faces are culled
-    /// in a closed mesh and in back-to-back pairs; elsewhere they are drawn.
+    /// Calls `triangle` for each face to be drawn, clipped where necessary. Back faces are culled in a closed mesh and
+    /// in back-to-back pairs; elsewhere they are drawn.
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
@@ -133,7 +133,8 @@ impl<'a, I: Index> VertexStage<'a, I> {
         counts
     }
 
-    /// Clips a face that reaches beyond the near plane or the guard band. Out of line because it is rare.
+    /// Clips a face that reaches beyond the near plane or the guard band. A separate function because it is rarely
+    /// called.
     #[cold]
     fn clipped(
         &self,

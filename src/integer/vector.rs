@@ -81,8 +81,8 @@ pub(super) fn narrow_unit(v: [i128; 3]) -> Option<Vector> {
     unit(v, 16).map(|v| v.map(|c| I16F16::from_bits(c as i32)))
 }
 
-/// An object's rotation matrix, from its angles about x, y and z: z first, then y, then x. It takes directions of the
-/// object to directions of the scene.
+/// An object's rotation matrix, from its angles about x, y and z: z first, then y, then x. It transforms directions of
+/// the object to directions of the scene.
 ///
 /// It is computed directly from the angles, never as a product of small steps: the same angles always give the same
 /// matrix. Every entry is within 0.501 of 1/65,536, so the rows have length 1 and are orthogonal to within √3 · 2 ·

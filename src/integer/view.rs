@@ -189,14 +189,14 @@ pub(super) struct ObjectView {
     offset: Wide,
     shift: u32,
     translation: Wide,
-    /// The object's rotation alone, from its directions to the scene's, of length 2³⁰.
+    /// The object's rotation alone, from object space to the scene; rows have length 2³⁰.
     turn: Matrix,
     pub(super) lens: Lens,
     pub(super) near: i64,
 }
 
 impl ObjectView {
-    /// The max distance of an object's point from the eye along an axis of the view, in 1/65,536: 65,536 units.
+    /// The max distance of an object's point from the eye along an axis of the view: 65,536 units, in 1/65,536.
     pub(super) const REACH: i64 = 1 << 32;
 
     /// The limit of projected coordinates, in quarter pixels, in both directions; points beyond it are clipped. It is
@@ -242,7 +242,7 @@ impl ObjectView {
         Ok(Self { matrix, offset, shift, translation, turn, lens: view.lens, near: view.near })
     }
 
-    /// Transforms a direction of the scene, of length 2³⁰, into the object's own space, with length 65,536.
+    /// Transforms a direction of the scene, of length 2³⁰, into object space, with length 65,536.
     pub(super) fn direction_in_object(&self, world: Wide) -> Vector {
         let column = |j: usize| [self.turn[0][j], self.turn[1][j], self.turn[2][j]];
         // Sums are below 2⁶²; results within ±65,536.

@@ -1,4 +1,4 @@
-//! The sum of all light at a point, in an object's own space.
+//! The sum of all light at a point, in object space.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use crate::lanes::three;
 use crate::mesh::Bounds;
 use crate::mesh::wide::{Wide, dot, sub, widen};
 
-/// A sun transformed into an object's space.
+/// A sun transformed into object space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct SunBeam {
     /// The unit direction towards the light.
@@ -19,7 +19,7 @@ pub(crate) struct SunBeam {
     pub(crate) channels: [f32; 3],
 }
 
-/// A lamp transformed into an object's space and units.
+/// A lamp transformed into object space and its units.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct LampBeam {
     pub(crate) position: Wide,
@@ -30,7 +30,7 @@ pub(crate) struct LampBeam {
     pub(crate) cone: Option<ConeBeam>,
 }
 
-/// The cone of a spot light in an object's space.
+/// The cone of a spot light in object space.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct ConeBeam {
     /// The unit direction along the cone's axis, back to the light.
@@ -45,7 +45,7 @@ pub(crate) struct ConeBeam {
 const LEAST_WIDTH: f64 = 1.0 / 65_536.0;
 
 impl ConeBeam {
-    /// Makes a cone from its direction in the object's space, of any length; `None` if that vanishes.
+    /// Makes a cone from its direction in object space, of any length; `None` if the direction is zero.
     pub(crate) fn new(cone: &Cone, direction: Wide) -> Option<Self> {
         let inner = libm::cos(cone.inner.to_radians());
         let width = inner - libm::cos(cone.outer.to_radians());
@@ -60,7 +60,7 @@ impl ConeBeam {
     }
 }
 
-/// Returns the number if it is above 0, and otherwise 0, also for NaN.
+/// Returns the number if it is above 0, and otherwise 0, including for NaN.
 fn positive(number: f64) -> f64 {
     if number > 0.0 { number } else { 0.0 }
 }
@@ -78,7 +78,7 @@ pub(crate) fn lamp_reaches(lamp: &LampBeam, bounds: Bounds) -> bool {
 pub(crate) struct Lights<'a> {
     pub(crate) suns: &'a [SunBeam],
     pub(crate) lamps: &'a [LampBeam],
-    /// The eye's position, in the object's own space.
+    /// The eye's position in object space.
     pub(crate) eye: Wide,
 }
 
@@ -106,11 +106,11 @@ impl Reflectance {
     }
 }
 
-/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that the unit `normal`
-/// points out of, and for the other side: only suns, on one channel, for a matt material.
+/// ka·Ia + kd·Σ Id·max(0, n·l), not yet clamped, for the side of the surface that the unit `normal` points out of, and
+/// for the other side: only suns, on one channel, for a matt material.
 ///
-/// The sum is taken in f64, in the order of the lights, where even a thousand lights of `f32::MAX`
-/// stay finite, whatever their signs.
+/// The sum is taken in f64, in the order of the lights. There, even a thousand lights of `f32::MAX`, of either sign,
+/// have a finite sum.
 #[inline]
 pub(crate) fn both_sides(ambient: f64, diffuse: f64, suns: &[SunBeam], normal: Vec3) -> (f64, f64) {
     let (mut front, mut back) = (0.0, 0.0);
@@ -233,8 +233,7 @@ impl Lights<'_> {
             if square >= 1.0 || square.is_nan() {
                 continue;
             }
-            // A lamp at the point itself lies in the plane of any face through it, so it lights
-            // none.
+            // A lamp at the point itself lies in the plane of any face through that point, so it lights none of them.
             let Some(towards) = unit(to_lamp) else { continue };
             let cosine = dot(wide_normal, towards);
             let highlight = highlight(to_eye, wide_normal, towards, cosine, shininess);

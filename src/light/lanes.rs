@@ -1,12 +1,12 @@
-//! The sum of all light at eight points of a surface at a time.
+//! The sum of all light at points of a surface, eight at a time.
 //!
-//! Each point gets the results of [`Lights::one_channel`] and [`Lights::three_channels`]: the
-//! operations and their order are the same, and each operation (sum, product, quotient, square
-//! root) rounds the same for vectors as for scalars. If a light does not contribute to a point,
-//! zero is added, which changes no sum: none is −0, since each starts at +0.
+//! Each point gets the results of [`Lights::one_channel`] and [`Lights::three_channels`]: the operations and their
+//! order are the same, and each operation (sum, product, quotient, square root) rounds equally in vectors and in
+//! scalars. If a light does not contribute to a point, zero is added, which changes no sum, since none is −0: each
+//! starts at +0.
 //!
-//! Lanes stay in vectors ([`F32Lanes8`]): the compiler vectorised index loops over arrays only in
-//! part, and three coloured lamps took a sixth longer.
+//! Lanes stay in vectors ([`F32Lanes8`]), because the compiler vectorised index loops over arrays only in part: three
+//! coloured lamps took a sixth longer.
 
 use super::ConeBeam;
 use super::intensity::{Lights, Reflectance};
@@ -81,8 +81,8 @@ fn channels<const N: usize>(intensity: f32, colors: [f32; 3]) -> [f64; N] {
 }
 
 impl Lights<'_> {
-    /// Sums all light on one channel, not yet clamped, for the side that the points' normals point out of. They may have
-    /// any length, unless they are `UNIT` normals, which are used unchanged.
+    /// Sums all light on one channel, not yet clamped, for the side that the points' normals point out of. They may
+    /// have any length, unless they are `UNIT` normals, which are used unchanged.
     pub(crate) fn front_of_one_channel<const UNIT: bool>(
         &self,
         reflectance: &Reflectance,
@@ -131,7 +131,7 @@ impl Lights<'_> {
             let [x, y, z] = sun.towards.to_array();
             let sum = l.add_f32(l.mul_f32(narrow[0], l.splat_f32(x)), l.mul_f32(narrow[1], l.splat_f32(y)));
             let cosines = positive(l, l.widen(l.add_f32(sum, l.mul_f32(narrow[2], l.splat_f32(z)))));
-            // Then the contribution is zero. Only highlights are worth a branch.
+            // Where all cosines are 0, so is the contribution. A branch pays only with highlights.
             if SHINES && l.is_zero(cosines) {
                 continue;
             }
@@ -145,7 +145,8 @@ impl Lights<'_> {
         if lamps.is_empty() {
             return front;
         }
-        // With highlights they are computed again: kept, they would take registers where there are no lamps.
+        // With highlights, normals and positions are widened a second time: kept from above, they would take up
+        // registers even where there are no lamps.
         let points = if SHINES { core::hint::black_box(points) } else { points };
         let (normals, places) = widened(l, narrow, points);
         for lamp in lamps {
@@ -194,7 +195,7 @@ fn sum<L: F32Lanes8, const N: usize, const UNIT: bool, const SHINES: bool>(
     let mut i = 0;
     while i < N {
         let mut own = l.add(ambient, l.mul(diffuse, front.diffuse[i]));
-        // Without a highlight, zero is added: −0 becomes 0, as it does with one.
+        // Without a highlight, zero is added: that turns −0 into 0, as it does with a highlight.
         let mut mirrored = l.splat_f64(0.0);
         if SHINES {
             mirrored = l.mul(l.splat_f64(reflectance.specular), front.specular[i]);

@@ -13,10 +13,9 @@ use crate::texture::Texture;
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 #[non_exhaustive]
 pub enum RampChoice {
-    /// The palette's ramp with this number, modulo the number of ramps, so with a palette of one
-    /// ramp it is always that one. If the palette has no ramps, it acts as
-    /// [`Nearest`](Self::Nearest); a white material is then drawn in the colours of the mesh's
-    /// surface, and dithered.
+    /// The palette's ramp with this index, modulo the number of ramps; in a palette of one ramp it is always that one.
+    /// If the palette has no ramps, this acts as [`Nearest`](Self::Nearest); a white material is then drawn in the
+    /// colours of the mesh's surface, and dithered.
     Number(u16),
     /// These entries, whatever the palette.
     Entries(Ramp),
@@ -61,7 +60,7 @@ pub struct Material {
     pub color: [f32; 3],
     /// Red, green and blue of its highlight, on three channels: usually white, so that it has the light's colour.
     pub highlight: [f32; 3],
-    /// An image mapped by the mesh's texture coordinates; the shades are those of the image.
+    /// An image mapped by the mesh's texture coordinates; the surface is shaded in the image's colours.
     pub texture: Option<Shared<Texture>>,
     /// An environment map: an image of the surroundings, looked up by the normal as seen from the eye. Ignored if there
     /// is a texture.
@@ -96,9 +95,9 @@ impl Material {
     /// The share of white light that a white surface reflects as ambient light; the rest is diffuse.
     const AMBIENT_SHARE: f32 = 0.15;
 
-    /// Converts a surface of an MTL file to a material on one channel: the luminance of Kd and Ks,
-    /// and a share of Kd as ambient. `number` chooses the ramp. The texture is left to the caller,
-    /// who can read files: [`with_map`](Self::with_map).
+    /// Converts a surface of an MTL file to a material on one channel: the luminance of Kd and Ks, and a share of Kd as
+    /// ambient. `number` chooses the ramp. The texture is left to callers that can read files:
+    /// [`with_map`](Self::with_map).
     #[must_use]
     pub(crate) fn from_surface(surface: &Surface, number: u16) -> Self {
         let diffuse = luminance(surface.diffuse);

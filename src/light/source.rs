@@ -76,8 +76,8 @@ impl Light {
 
     /// A white spot light of intensity 1: a lamp at `position` with a range above 0, limited to `cone`.
     ///
-    /// On large faces its edge shows only if light is computed inside them, too:
-    /// [`Settings`](crate::settings::Settings) says how.
+    /// On large faces its edge shows only if light is computed inside them, too: see
+    /// [`Settings`](crate::settings::Settings).
     #[must_use]
     pub fn spot(position: impl Into<Vec3>, range: f32, cone: Cone) -> Self {
         Self::Lamp { position: position.into(), intensity: 1.0, range, color: WHITE, cone: Some(cone) }
@@ -101,8 +101,8 @@ impl Light {
         self
     }
 
-    /// Turns a sun or a spot light. The direction points towards a sun, but away from a spot light. A lamp that shines in
-    /// all directions is left as it is.
+    /// Turns a sun or a spot light. The direction points towards a sun, but away from a spot light. A lamp that shines
+    /// in all directions is left as it is.
     ///
     /// ```
     /// use mode13h::Angle;
@@ -161,7 +161,7 @@ impl Light {
                 Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
             });
         }
-        // Infinity plus a number of the opposite sign would give NaN.
+        // The sum of an infinity and a number of the opposite sign would be NaN.
         let is_held = |share: f32| (share * self.intensity()).is_finite();
         if !(self.color().into_iter().all(is_held) && self.brightness().is_finite()) {
             return Err("its intensity times its colour must be finite");

@@ -42,8 +42,8 @@ impl Mesh {
         };
     }
 
-    /// The index of each vertex's surface; 0 if no triangle uses it. In a mesh without [one surface per
-    /// vertex](Self::has_one_surface_a_vertex), that of the last triangle.
+    /// The index of each vertex's surface; 0 if no triangle uses the vertex. In a mesh without [one surface per
+    /// vertex](Self::has_one_surface_a_vertex), the last triangle that uses the vertex decides.
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
@@ -54,7 +54,7 @@ impl Mesh {
         self.facts.longest_edges
     }
 
-    /// For each surface, the max change of its texture coordinates over one unit of the mesh.
+    /// For each surface, the greatest change of its texture coordinates over one unit of the mesh.
     pub(crate) fn steepest_texcoords(&self) -> &[f64] {
         &self.facts.steepest_texcoords
     }

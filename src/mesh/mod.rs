@@ -64,8 +64,8 @@ pub struct Mesh {
     facts: facts::Facts,
 }
 
-/// The line of each triangle in the file that the mesh was read from; empty if it comes from no file. Ignored when
-/// meshes are compared: the same mesh may be on other lines of another file.
+/// The line of each triangle in the file that the mesh was read from; empty if there was no file. Ignored when meshes
+/// are compared, since equal meshes may be on different lines of different files.
 #[derive(Clone, Debug, Default)]
 struct Lines(Vec<u32>);
 
@@ -165,8 +165,8 @@ impl Mesh {
         Self::assemble_welded(positions, normals, triangles, &points, &edges).with_facts()
     }
 
-    /// Does the work of [`assemble`](Self::assemble) for callers that already know the points of
-    /// the vertices and the edges, and leaves the other facts to them.
+    /// Does the work of [`assemble`](Self::assemble) for callers that already know the vertices' points and the edges.
+    /// The caller computes the other facts.
     fn assemble_welded(
         mut positions: Vec<Vec3>,
         mut normals: Vec<Vec3>,
@@ -259,9 +259,9 @@ impl Mesh {
         self.bounds
     }
 
-    /// Returns whether every edge is traversed equally often in both directions. Then the mesh bounds a solid, or
+    /// Returns whether every edge is traversed equally often in both directions. Then the mesh bounds one solid, or
     /// several that may share edges and points. Vertices at the same position count as one, and triangles with two
-    /// corners at one point do not count.
+    /// corners at one point are ignored.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.closed
@@ -301,7 +301,7 @@ impl Mesh {
     }
 }
 
-/// Checks what every mesh must satisfy.
+/// Checks the invariants of every mesh.
 fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
     if triangles.is_empty() {
         return Err(MeshError::NoTriangles);

@@ -7,12 +7,12 @@ use glam::Vec3;
 use super::{Mesh, MeshError};
 
 impl Mesh {
-    /// Copies the mesh with new positions and normals, one of each per vertex. Triangles, surfaces
-    /// and texture coordinates are kept, and normals are normalised. To have normals computed, pass the old ones, and
-    /// call [`smooth`](Self::smooth) or [`flat`](Self::flat) on the copy.
+    /// Copies the mesh with new positions and normals, one of each per vertex. The normals are normalised; triangles,
+    /// surfaces and texture coordinates are kept. To have normals computed, pass the old ones, and call
+    /// [`smooth`](Self::smooth) or [`flat`](Self::flat) on the copy.
     ///
-    /// Whether the copy is closed, faces outward and is convex is determined again, because a bend may change all of it.
-    /// That takes most of the time.
+    /// Whether the copy is closed, faces outward and is convex is tested again, since a bend may change any of these.
+    /// The tests take most of the time.
     ///
     /// ```
     /// use mode13h::glam::Vec3;
@@ -27,7 +27,7 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// Those of [`with_normals`](Self::with_normals), and a number of positions other than that of the vertices.
+    /// The errors of [`with_normals`](Self::with_normals); a different number of positions than of vertices.
     pub fn with_vertices(&self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<Self, MeshError> {
         let (given, needed) = (positions.len(), self.positions.len());
         if given != needed {

@@ -127,18 +127,17 @@ impl<'a> Together<'a> {
         Self { least, groups, edges: None }
     }
 
-    /// Makes a mesh with these edges smooth everywhere if its sharp edges are [scattered], as on a scan. Otherwise the
-    /// rule is unchanged.
+    /// Makes the mesh with these edges smooth everywhere if its sharp edges are [scattered], as on a scan. Otherwise
+    /// the rule is unchanged.
     ///
     /// [scattered]: Self::is_scattered
     pub(super) fn unless_scattered(self, edges: topology::Edges) -> Self {
         Self { edges: Some(edges), ..self }
     }
 
-    /// Returns whether sharp edges end at random, as noise makes them. On a designed model they
-    /// continue until they meet others or the mesh's rim: nearly all points on a sharp edge have
-    /// two. On scans a third or more of these points are ends; above an eighth, edges count as
-    /// scattered.
+    /// Returns whether sharp edges end at random places, as they do when they come from noise. On a designed model they
+    /// continue until they meet others or the mesh's rim: nearly all points on a sharp edge are on two. On scans a
+    /// third or more of these points are ends; above an eighth, edges count as scattered.
     fn is_scattered(&self, edges: &topology::Edges, faces: &[Face], count: usize) -> bool {
         const RIM: u8 = u8::MAX;
         let mut sharp = vec![0_u8; count];
@@ -189,8 +188,8 @@ impl Mesh {
 
     /// Gives every face its own normal at all its corners. Vertices are split where necessary.
     ///
-    /// For facets under any shading. [`Shading::Flat`](crate::settings::Shading::Flat) shows facets without splitting
-    /// vertices.
+    /// This gives facets under any shading; [`Shading::Flat`](crate::settings::Shading::Flat) gives them without
+    /// splitting vertices.
     pub fn flat(&mut self) {
         let faces = self.faces();
         let normal = |corner: usize, _| {
@@ -220,8 +219,8 @@ impl Mesh {
         known: Vec<Option<Vec3>>,
     ) {
         let faces = self.faces();
-        // One sum for each class: a point, or some of the faces there. (One for each corner would be 48 bytes per
-        // corner: for ten million faces over a gigabyte.)
+        // One sum for each class: a point, or some of the faces there. (A sum for each corner would take 48 bytes per
+        // corner: over a gigabyte for ten million faces.)
         let classes = together.as_ref().and_then(|rule| {
             let classes = self.classes(points, &faces, rule)?;
             match &rule.edges {
@@ -256,9 +255,8 @@ impl Mesh {
                 *total += weight;
             }
         }
-        // A sum of at most a millionth of its weights is the remainder of opposite faces that
-        // cancel, not a direction. Rounding is 2⁻⁵⁰ of the weights, so anything longer is exact to
-        // 2⁻³⁰.
+        // A sum of at most a millionth of its weights is the remainder of opposite faces that cancel, not a direction.
+        // The rounding error is 2⁻⁵⁰ of the weights, so anything longer is accurate to 2⁻³⁰.
         let mean = |(sum, total): &(Wide, f64)| {
             let long = length(*sum);
             (long > total * (1.0 / 1_048_576.0)).then(|| narrow(scale(*sum, 1.0 / long)))
@@ -276,13 +274,13 @@ impl Mesh {
     }
 
     /// The class of faces that share a normal, for each corner: the index of its point, or, if the faces at a point are
-    /// not all averaged together, a number beyond all points. `None` if there is no such point.
+    /// not all averaged together, a number beyond all points. `None` if the faces at every point are averaged together.
     fn classes(&self, points: &[u32], faces: &[Face], together: &Together<'_>) -> Option<Vec<u32>> {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
         let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
-        // If every face matches the first one, no more comparisons are needed, as nearly everywhere
-        // on a scan.
+        // If every face at a point matches the first one, no more comparisons are needed there. On a scan, this holds
+        // nearly everywhere.
         let mut first = vec![NONE; count];
         let mut is_divided = vec![false; count];
         let mut any = false;
@@ -301,7 +299,7 @@ impl Mesh {
             return None;
         }
         let mut classes: Vec<u32> = self.triangles.as_flattened().iter().map(|&i| points[i as usize]).collect();
-        // Point and corner, of which there are fewer than 2³², see `Mesh::MAX_COUNT`.
+        // Points and corners, of which there are fewer than 2³²: see `Mesh::MAX_COUNT`.
         let corners = (0..).zip(&classes).filter(|&(corner, point)| {
             is_divided[*point as usize] && takes_part(corner as usize / 3) //
         });
@@ -326,8 +324,8 @@ impl Mesh {
         Some(classes)
     }
 
-    /// Sets the normals of each vertex's corners, where `None` accepts any. Splits the vertices whose corners need more
-    /// than one. `given`: the normals that vertices already have.
+    /// Sets the normals of each vertex's corners, where `None` accepts any, and splits the vertices whose corners need
+    /// more than one. `given` holds the normals that vertices already have.
     fn give(&mut self, normal: impl Fn(usize, u32) -> Option<Vec3>, mut given: Vec<Option<Vec3>>) {
         let bits = |n: Vec3| [n.x, n.y, n.z].map(f32::to_bits);
         let mut splits: Vec<(u32, [u32; 3], u32)> = Vec::new();
@@ -357,7 +355,7 @@ impl Mesh {
     }
 }
 
-/// The faces at one point, in groups that are connected.
+/// The faces at one point, in connected groups.
 #[derive(Default)]
 struct Parts {
     sets: Sets,
@@ -366,8 +364,7 @@ struct Parts {
 
 impl Parts {
     /// The number of faces at a point that are all compared with each other. Any further face is compared with these,
-    /// with the last eight, and with those that matched none of these, so the time per point does not grow
-    /// quadratically.
+    /// with the last eight, and with those that matched none of these, so the time per point is not quadratic.
     const COMPARED: usize = 64;
 
     fn find(&mut self, count: u32, linked: impl Fn(u32, u32) -> bool) {

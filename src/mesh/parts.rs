@@ -46,9 +46,9 @@ pub struct Parts {
     /// The smoothing group of each triangle, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Normals are averaged
     /// within a group.
     pub groups: Vec<u32>,
-    /// The crease angle: two faces that differ by more have a sharp edge between them. It replaces
-    /// the groups. With `None` the groups decide, and without groups 40°, except that a scan,
-    /// recognised by sharp edges that end at random, is smooth everywhere.
+    /// The crease angle: two faces that differ by more have a sharp edge between them. It replaces the groups. With
+    /// `None` the groups decide; without groups the angle is 40°, except that a scan, recognised by sharp edges that
+    /// end at random places, is smooth everywhere.
     pub crease: Option<Angle>,
     /// Disables repairs: triangles keep their number, order and corners, which callers that move
     /// the vertices rely on ([`Mesh::with_vertices`]).
@@ -79,8 +79,8 @@ impl Mesh {
     /// are cavities in others. Vertices that become unused are dropped.
     ///
     /// # Errors
-    /// Those of [`Mesh::new`]; a list that is neither empty nor has one entry for each vertex or triangle; a pair of
-    /// texture coordinates that is not finite; a surface that does not exist.
+    /// The errors of [`Mesh::new`]; a list that is neither empty nor has one entry for each vertex or triangle; a pair
+    /// of texture coordinates that is not finite; a surface that does not exist.
     pub fn from_parts(parts: Parts) -> Result<(Self, Repairs), MeshError> {
         let Parts {
             positions: mut places,
@@ -120,7 +120,7 @@ impl Mesh {
         let mut repairs = Repairs::default();
         if !as_given && edges.balance() {
             let pairs = twins::mistaken(&edges, &triangles, &points, &triangle_surfaces);
-            // A mesh that consists of nothing else is left unchanged.
+            // A mesh that consists only of such pairs is left unchanged.
             if !pairs.is_empty() && 2 * pairs.len() < triangles.len() {
                 repairs.pairs = pairs.len();
                 let mut keep = vec![true; triangles.len()];

@@ -5,9 +5,9 @@
 //! traverse the edge in one direction than in the other) are joined. So two boxes that touch along an edge are two
 //! shells.
 //!
-//! A shell with negative volume is inside out, unless it is a **cavity**: the larger shells, once flipped themselves,
-//! wind at least once around it. This is tested at a point of one of its faces, by counting crossings along a ray from
-//! outside.
+//! A shell with negative volume is inside out, unless it is a **cavity**: the winding number of the larger shells, once
+//! flipped themselves, is at least one around it. This is tested at a point on one of its faces, by counting crossings
+//! along a ray from outside.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -84,7 +84,7 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
         }
     }
     if has_others {
-        // The parts that do not balance where they meet others. Joined, they balance.
+        // The parts that do not balance where they meet others. Joined together, they do.
         let mut joins = Vec::new();
         let mut here: Vec<(u32, i32)> = Vec::new();
         for faces in edges.faces_by_edge().filter(|faces| faces.clone().count() > 2) {

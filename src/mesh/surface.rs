@@ -6,7 +6,7 @@ use crate::palette::Rgb;
 
 /// A face's surface, in the terms of an MTL file. The default is white and matt.
 ///
-/// [`Object::new`](crate::scene::Object::new) says what of it is drawn.
+/// [`Object::new`](crate::scene::Object::new) documents which of these properties are drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// `newmtl`; empty if the mesh does not come from a file.

@@ -1,5 +1,5 @@
-//! Topology of a mesh: which vertices are the same point, whether it is closed, whether it is
-//! convex. The plan relies on these to skip work, so they are exact, and "no" when in doubt.
+//! The topology of a mesh: which vertices are the same point, whether it is closed, and whether it is convex. The plan
+//! relies on these answers to skip work, so they are exact, and "no" when in doubt.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -19,7 +19,7 @@ pub(super) fn weld(positions: &[Vec3]) -> Vec<u32> {
 }
 
 /// Welds with an open-addressing hash table, at most half full. Returns `None` if there are far more probes than chance
-/// would give: the positions were made to collide.
+/// would cause, because the positions were chosen to collide.
 fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K) -> Option<Vec<u32>> {
     const FREE: u32 = u32::MAX;
     let size = (2 * count).next_power_of_two();
@@ -132,8 +132,8 @@ impl Edges {
         self.starts[point] as usize..self.starts[point + 1] as usize
     }
 
-    /// The faces at each edge, edge by edge: its two points, the lower first; then for each face whether it traverses
-    /// the edge downward, and the corner where that starts.
+    /// The faces at each edge, edge by edge: the edge's two points, the lower first; then for each face whether it
+    /// traverses the edge downward, and the corner where that traversal starts.
     pub(super) fn each(&self) -> impl Iterator<Item = ((u32, u32), &[(u32, u32)])> {
         (0..self.starts.len() - 2).flat_map(|point| {
             // Points are below 2³¹.
@@ -154,8 +154,8 @@ impl Edges {
 
     /// Returns whether every edge has exactly two faces, which traverse it in opposite directions.
     fn are_pairs(&self) -> bool {
-        // Sorted, such a mesh reads: edge upward, edge downward, next edge upward … An edge with four faces reads
-        // upward, upward, downward, downward.
+        // In sorted order, the edges of such a mesh alternate: edge upward, edge downward, next edge upward … At an
+        // edge with four faces, the order is upward, upward, downward, downward.
         let paired = |edges: &[(u32, u32)]| {
             let (pairs, rest) = edges.as_chunks::<2>();
             rest.is_empty() && pairs.iter().all(|[up, down]| up.0 & 1 == 0 && down.0 == up.0 + 1)
@@ -169,14 +169,13 @@ impl Edges {
     }
 
     /// The faces at each edge: for each, whether it traverses the edge downward, from the higher point to the lower,
-    /// and the corner where that starts, counted through all triangles.
+    /// and the corner where that traversal starts, counted through all triangles.
     pub(super) fn faces_by_edge(&self) -> impl Iterator<Item = impl Iterator<Item = (bool, usize)> + Clone> {
         self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
     }
 
-    /// Calls `found` for triangles that lie back to back, with the same three points and opposite
-    /// winding: those wound one way, and those wound the other. Neither list is empty; each is in
-    /// ascending order.
+    /// Calls `found` for triangles that lie back to back, with the same three points and opposite winding: first the
+    /// list of those wound one way, then of those wound the other. Neither list is empty; each is in ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
         let (mut ups, mut downs) = (Vec::new(), Vec::new());
         let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
@@ -245,8 +244,8 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
         return false;
     }
 
-    // Tested before the solid angles, which take longer: few meshes are convex, and nearly all
-    // others have a dent at one of the first edges tested.
+    // Tested before the solid angles, which take longer: few meshes are convex, and nearly all others have a concave
+    // edge among the first ones tested.
     let far = |corner: usize| positions[triangles[corner / 3][(corner + 2) % 3] as usize];
     let dented = edges.pairs().any(|[one, other]| {
         let [a, b, c] = triangles[one / 3].map(|vertex| positions[vertex as usize]);

@@ -1,8 +1,8 @@
 //! Triangles that lie back to back: same three points, opposite winding.
 //!
 //! Both have the same depth at every pixel. Only the one that faces the eye is visible, so the renderer skips the
-//! other. Leaves are modelled like this, each side with a normal and a surface of its own; scans have such triangles by
-//! mistake.
+//! other. Leaves are modelled like this, each side with its own normal and surface; in scans such triangles are
+//! defects.
 
 use alloc::vec;
 use alloc::vec::Vec;

@@ -1,8 +1,8 @@
 //! Vectors in f64, for values computed once for a mesh, an object or a light.
 //!
-//! For a mesh f32 would overflow: the difference of two positions may be twice `f32::MAX`, and a normal's squared length is a
-//! fourth power of a length. In f64 neither end of the range is reached: the fourth power of 2¹²⁹ is 2⁵¹⁶, that of
-//! 2⁻¹⁴⁹ (the smallest f32) 2⁻⁵⁹⁶. So nothing needs scaling.
+//! For a mesh f32 would overflow: the difference of two positions may be twice `f32::MAX`, and a normal's squared
+//! length is a fourth power of a length. f64 can neither overflow nor underflow here: the fourth power of 2¹²⁹ is 2⁵¹⁶,
+//! that of 2⁻¹⁴⁹ (the smallest f32) 2⁻⁵⁹⁶. So nothing needs scaling.
 
 use glam::Vec3;
 

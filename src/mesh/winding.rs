@@ -54,8 +54,8 @@ pub(super) fn is_outward(positions: &[Vec3], triangles: &[[u32; 3]], bounds: &Bo
     let (min, max) = (widen(bounds.min), widen(bounds.max));
     let sides = [0, 1, 2].map(|axis| max[axis] - min[axis]);
     let longest = sides.into_iter().fold(0.0, f64::max);
-    // In units of the ray spacing: rays lie at the integers 1 to 64. The box's offset from them is
-    // no simple fraction, so that no ray lies in a plane of a symmetrical model.
+    // In units of the ray spacing: rays lie at the integers 1 to 64. The box's offset from them is not a simple
+    // fraction, so that no ray lies in a plane of a symmetrical model.
     let scale = sides.map(|side| if side > 0.0 { f64::from(RAYS) / side } else { 0.0 });
     let part = [0.618_034, 0.414_214, 0.732_051];
     let scaled = |p: Vec3| {

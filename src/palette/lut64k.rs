@@ -44,7 +44,7 @@ impl Lut64K {
         }
     }
 
-    /// Refills this table, eight bytes of a row at a time: `bytes` is given their row and the first column.
+    /// Refills this table, eight bytes of a row at a time: `bytes` receives their row and the first of their columns.
     pub(crate) fn fill_by_eights(&mut self, mut bytes: impl FnMut(u8, u8) -> [u8; 8]) {
         for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
             for (low, eight) in (0..=255).step_by(8).zip(row.as_chunks_mut::<8>().0) {
@@ -93,10 +93,9 @@ impl Lut64K {
         })
     }
 
-    /// A table of glenz, glass that shines: the entry nearest to the sum of both colours, each
-    /// channel at most 255. Row and column are as in [`blend`](Self::blend), but swapping them does
-    /// not change the picture. A byte that shows black adds nothing: the result is the other byte,
-    /// or the old one if both are black.
+    /// A table of glenz, or additive transparency: the entry nearest to the sum of both colours, each channel at most
+    /// 255. Row and column are as in [`blend`](Self::blend), but swapping them does not change the picture. A byte that
+    /// shows black adds nothing: the result is the other byte, or the old one if both are black.
     #[must_use]
     pub fn add(palette: &Palette) -> Self {
         let shown = palette.on_dac();

@@ -8,7 +8,7 @@
 //! II, 1991).
 //!
 //! Crates for this (`quantette`, `imagequant`, `color_quant`) need `std`, use randomness, or do not report the gain of
-//! the next colour, which palettes made for a scene need.
+//! the next cut, which palettes made for a scene need.
 
 use alloc::vec;
 use alloc::vec::Vec;

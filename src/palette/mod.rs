@@ -75,7 +75,7 @@ impl Index<u8> for Palette {
 }
 
 impl Palette {
-    /// The max number of ramps that [`from_colors`](Self::from_colors) looks for, each then of 8 entries.
+    /// The max number of ramps that [`from_colors`](Self::from_colors) looks for; each would have 8 entries.
     const MAX_RAMPS_FOUND: u16 = 32;
 
     /// Makes a palette of 256 colours, and finds its ramps: the smallest number, out of 1, 2, 4, 8,

@@ -1,9 +1,9 @@
 //! An exact search for the nearest of up to 256 colours that does not look at all of them.
 //!
 //! The RGB cube is divided into 8 × 8 × 8 boxes. For each box, take the colour that minimises the distance to the box's
-//! *farthest* point: every point of the box has a colour at most that far away. So a colour farther than that from the
-//! box's *nearest* point is not nearest to any point of it. Each box lists the remaining colours, about a tenth, in
-//! their order, so that ties still go to the first.
+//! *farthest* point: no point of the box is farther than that from its nearest colour. So a colour farther than that
+//! from the box's *nearest* point cannot be the nearest to any point of it. Each box lists the remaining colours, about
+//! a tenth, in their original order, so that ties still go to the first.
 //!
 //! Building the lists takes 0.3 ms for 256 colours, and a table of 65,536 searches 2 to 6 ms in all. With 16 boxes per
 //! side the lists take 2.3 ms, and the searches save less than that.

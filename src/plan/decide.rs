@@ -105,7 +105,7 @@ pub(crate) fn has_custom_response(object: &Object) -> bool {
     object.materials.iter().any(|material| material.response.is_some())
 }
 
-/// Returns whether the 16.16 path supports an effect.
+/// Returns whether the 16.16 path supports this effect.
 const fn in_integers(effect: Effect) -> bool {
     matches!(
         effect,
@@ -514,9 +514,9 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
     }
 }
 
-/// The largest number of texels along a pixel's side over all textures of an object, for a face
-/// parallel to the screen and at most `farthest` away along the view: the texels of a texture's
-/// longer side, times the change in texture coordinates per unit, times a pixel's longer side.
+/// The largest number of texels along a pixel's side, over all textures of an object, on a face parallel to the screen
+/// and at most `farthest` away along the view: the texels of a texture's longer side, times the change in texture
+/// coordinates per unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
     let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
     let steepest = images.filter_map(|(material, change)| {

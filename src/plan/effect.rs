@@ -5,8 +5,8 @@ use crate::names::named;
 named! {
     /// A decision that the plan makes for every object.
     pub enum Effect, "effect" {
-        /// Transforms and projects the object's vertices; otherwise the last frame's are reused, or the object is out of
-        /// sight and needs none.
+        /// Transforms and projects the object's vertices; otherwise the last frame's are reused, or the object is out
+        /// of sight and needs none.
         Transform = "transform",
         /// Tests every vertex against the near plane; otherwise no vertex is tested.
         NearClipping = "near-clipping",
@@ -51,8 +51,8 @@ named! {
 }
 
 impl Effect {
-    /// Returns whether the effect keeps triangles within what the raster can draw. If so, it cannot
-    /// be switched off where it is called for.
+    /// Returns whether the effect ensures that the raster can draw the triangles. If so, it cannot be switched off
+    /// where it is called for.
     pub(super) const fn keeps_inside(self) -> bool {
         matches!(self, Self::NearClipping | Self::ScreenClipping)
     }

@@ -128,7 +128,7 @@ impl ObjectPlan {
 /// Manual overrides of effects: `None` leaves an effect to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
 pub struct Overrides {
-    /// `None` is every object without an override of its own.
+    /// `None` stands for every object without an override of its own.
     all: Vec<(Option<ObjectId>, Effect, bool)>,
 }
 
@@ -180,12 +180,12 @@ impl Default for Plan {
 }
 
 impl Plan {
-    /// The near distance that the camera needs, if its own is too small: 2⁻²⁰ of the farthest distance that a visible
+    /// The near distance that the camera needs, if its own is too small: 2⁻²⁰ of the greatest distance that any visible
     /// object reaches.
     ///
-    /// Depths are near / w in steps of 2⁻³⁰. With a smaller near distance they have fewer than ten bits for distant
-    /// surfaces, which then hide each other at random; perspective-correct shades and textures and the error budget are
-    /// wrong there, too.
+    /// Depths are near / w in steps of 2⁻³⁰. With a smaller near distance, depths of distant surfaces have fewer than
+    /// ten bits, so such surfaces hide each other at random; perspective-correct shades and textures and the error
+    /// budget are wrong there, too.
     #[must_use]
     pub fn near_needed(&self) -> Option<f32> {
         self.near_needed

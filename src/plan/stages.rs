@@ -50,8 +50,7 @@ pub(crate) enum VertexStage {
     Keep,
     /// Vertices are computed.
     Make,
-    /// Vertices and everything cached with them are recomputed, because this was forced or because
-    /// nothing is cached.
+    /// Vertices and everything cached with them are recomputed, because this was forced or nothing is cached.
     #[default]
     MakeAnew,
 }

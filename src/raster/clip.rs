@@ -6,10 +6,10 @@
 
 use super::vertex::Vertex;
 
-/// Number of clip planes: near, then left, right, top and bottom of the guard band.
+/// The number of clip planes: near, then left, right, top and bottom of the guard band.
 pub const PLANES: usize = 5;
 
-/// Maximum number of corners: three, and at most one more for every plane.
+/// The maximum number of corners: three, and at most one more for every plane.
 pub const MAX_CORNERS: usize = 3 + PLANES;
 
 /// The corners of a convex polygon before the perspective division, in either vertex path's
@@ -49,7 +49,7 @@ impl<C: Copy> Corners<C> {
 /// Clips a triangle against the planes (Sutherland, Hodgman 1974); `None` if nothing is left.
 ///
 /// `distance` is a corner's distance from a plane, 0 ([`Default`]) or more inside. `cut` returns the point where an
-/// edge meets a plane; it is given the plane, the inside and the outside end, and their distances.
+/// edge meets a plane; it receives the plane, the inside and the outside end, and their distances.
 #[must_use]
 pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
     [a, b, c]: [C; 3],

@@ -78,7 +78,7 @@ pub(crate) struct Columns<'a> {
     pub(crate) effects: EffectColumns<'a>,
 }
 
-/// A value of the corners of eight consecutive triangles, of a column by corner.
+/// The values of a column, stored by corner, at the corners of eight consecutive triangles.
 #[inline(always)]
 pub(super) fn eight_corners<T>(column: &[T], [a, b, c]: [usize; 3]) -> Option<[&[T; LANES]; 3]> {
     let from = |corner: usize| column.get(corner..)?.first_chunk();
@@ -101,20 +101,21 @@ pub(crate) struct EffectColumns<'a> {
 }
 
 /// The values of a corner besides its position, shade and depth. Values that a pipeline does not use are ignored, and
-/// those above 0xFF00 count as 0xFF00.
+/// numbers above 0xFF00 count as 0xFF00.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub struct Attributes {
     /// Texture coordinates, across and up, in texels with 16 fraction bits. Row 0 of a
-    /// [`Texture`](crate::texture::Texture) is the lowest of its picture.
+    /// [`Texture`](crate::texture::Texture) is the bottom row of its picture.
     pub texture: [i32; 2],
-    /// Density of the fog, 0 to 0xFF00.
+    /// The density of the fog, 0 to 0xFF00.
     pub fog: U8F8,
     /// Red, green and blue, each 0 to 0xFF00.
     pub channels: [U8F8; 3],
-    /// The column and the row in the table of [`ShadeSource::NormalTable`](super::effects::ShadeSource::NormalTable), each 0 to 0xFF00.
+    /// The column and the row in the table of [`ShadeSource::NormalTable`](super::effects::ShadeSource::NormalTable),
+    /// each 0 to 0xFF00.
     pub slope: [U8F8; 2],
-    /// Input of [`PixelLighting`](super::effects::PixelLighting): a normal and a position.
+    /// The input of [`PixelLighting`](super::effects::PixelLighting): a normal and a position.
     ///
     /// For [`ShadeSource::Curved`](super::effects::ShadeSource::Curved) these are the shade at the corner, or its three
     /// channels, and then the shade or channels at the midpoint (on the screen) of the opposite edge. They are in 8.8
@@ -162,7 +163,7 @@ impl EffectColumns<'_> {
     }
 }
 
-/// Input of per-pixel lighting.
+/// The input of per-pixel lighting.
 #[cfg(feature = "alloc")]
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum LitColumn<'a> {
@@ -200,8 +201,8 @@ impl LitColumn<'_> {
 pub(crate) struct Triangles<'a> {
     pub(crate) columns: Columns<'a>,
     pub(crate) indices: &'a [[u32; 3]],
-    /// The most triangles that the columns hold, if they are [`Corners`](super::triangles::Corners): eight triangles are
-    /// then loaded without gathering.
+    /// The most triangles that the columns hold, if they are [`Corners`](super::triangles::Corners): eight triangles
+    /// are then loaded without gathering.
     pub(crate) by_corner: Option<usize>,
 }
 

@@ -123,7 +123,7 @@ fn cull_in_integers(triangles: impl Iterator<Item = [ScreenPos; 3]>, culls: bool
 #[inline(always)]
 fn cull_eight<S: Lanes8>(s: S, [a, b, c]: [S::I64; 3], clip: Rect, culls: bool) -> [u32; 8] {
     let ([ax, ay], [bx, by], [cx, cy]) = (s.halves_of_i64(a), s.halves_of_i64(b), s.halves_of_i64(c));
-    // The mark is the smallest i32. The other values of such a triangle are meaningless.
+    // A vertex that needs clipping has the smallest i32 as its x. The other values of its triangle are meaningless.
     let least = s.min_i32(s.min_i32(ax, bx), cx);
     let beyond = s.splat_i32(ScreenPos::BEYOND);
     let clipped = s.to_bitmask(s.is_equal(least, beyond));
@@ -432,7 +432,7 @@ mod tests {
                     let [a, b, c] = vertices.each_ref().map(|v| units(v).first_centre());
                     (a.min(b).min(c), a.max(b).max(c))
                 };
-                // A tiny triangle may cover pixels beyond the frame alone.
+                // A tiny triangle may cover only pixels beyond the frame.
                 let is_tiny = |(first, end)| end - first <= TINY_SIDE && first >= 0 && end <= 32;
                 let is_tiny = is_tiny(centres(Vertex::x)) && is_tiny(centres(Vertex::y));
                 if is_tiny && clip == (Rect { x0: 0, y0: 0, x1: 32, y1: 32 }) {

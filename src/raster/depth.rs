@@ -7,8 +7,8 @@ use super::frame::Rect;
 pub use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
-/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines, which cannot tell depths
-/// apart that differ by less than 2¹⁴ of 2³⁰. Greater is nearer, 0 is farthest. The caller owns the slice.
+/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines, which cannot distinguish
+/// depths that differ by less than 2¹⁴ of 2³⁰. Greater is nearer, 0 is farthest. The caller owns the slice.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],
@@ -86,10 +86,10 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
     }
 }
 
-/// Cells of a depth buffer for one frame after the other, which are cleared in one frame of three.
+/// Memory for the depth buffers of successive frames, which is cleared in only one frame out of three.
 ///
 /// Depths are at most 2³⁰, a quarter of what a cell can hold. So the second frame after a clear adds 2³⁰ to its depths,
-/// and the third adds 2³¹: whatever the frames before it have stored is farther than all that it draws.
+/// and the third adds 2³¹: everything that the frames before it have stored is farther than anything that it draws.
 ///
 /// ```
 /// use mode13h::raster::{DepthMemory, Frame, Interpolation, Raster, Vertex};
@@ -110,7 +110,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 #[derive(Clone, Debug, Default)]
 pub struct DepthMemory {
     cells: alloc::vec::Vec<u32>,
-    /// The columns and the rows of the frame whose depths they hold.
+    /// The columns and the rows of the frame whose depths the cells hold.
     shape: (u32, core::ops::Range<u32>),
     /// The base of the current frame.
     base: u32,
@@ -122,7 +122,7 @@ pub struct DepthMemory {
 impl DepthMemory {
     /// The number of depths that a frame can have: 1 to 2³⁰.
     const DEPTHS: u32 = 1 << 30;
-    /// The base of the last frame before a clear. One more would overflow for a depth of 2³⁰.
+    /// The base of the last frame before a clear. With a greater one, a depth of 2³⁰ would overflow.
     const LAST_BASE: u32 = 2 * Self::DEPTHS;
 
     /// No cells: the first frame allocates them.
@@ -158,7 +158,7 @@ impl DepthMemory {
         let mut buffer = DepthBuffer::new(&mut self.cells, frame).ok()?;
         buffer.base = self.base;
         if !is_bounded {
-            // Its depths may be anything, so the next frame clears.
+            // The depths of this frame may be anything, so the next frame clears.
             self.base = Self::LAST_BASE;
         }
         Some(buffer)
@@ -169,7 +169,7 @@ impl DepthMemory {
 mod tests {
     use super::*;
 
-    /// Cells outside the rectangle do not change, even where whole rows are cleared and in a band.
+    /// Cells outside the rectangle do not change, even where whole rows are cleared, and even in a band.
     #[test]
     fn a_rectangle_is_cleared_and_no_more() {
         for (x0, x1) in [(0, 5), (1, 4)] {

@@ -13,39 +13,39 @@ pub(super) const MAX_SIDE: u32 = 4096;
 pub enum RasterError {
     /// Width or height is 0 or above 4,096.
     Size {
-        /// Requested columns.
+        /// The number of columns requested.
         width: u32,
-        /// Requested rows.
+        /// The number of rows requested.
         height: u32,
     },
     /// The pitch is less than the width.
     Pitch {
-        /// Bytes from one row to the next.
+        /// The number of bytes from one row to the next.
         pitch: usize,
-        /// Columns.
+        /// The number of columns.
         width: u32,
     },
     /// The band of rows is empty or reaches beyond the frame.
     Band {
-        /// First row of the band.
+        /// The first row of the band.
         first: u32,
-        /// The row after its last.
+        /// The row after the band's last.
         end: u32,
-        /// Rows of the frame.
+        /// The number of rows of the frame.
         height: u32,
     },
     /// There are fewer bytes than the rows need.
     Short {
-        /// Bytes given.
+        /// The number of bytes given.
         given: usize,
-        /// Bytes needed.
+        /// The number of bytes needed.
         needed: usize,
     },
     /// There are fewer depths than the frame's columns times the rows it holds.
     Depths {
-        /// Depths given.
+        /// The number of depths given.
         given: usize,
-        /// Depths needed.
+        /// The number of depths needed.
         needed: usize,
     },
     /// A coordinate lies outside the guard band of ±4,096 pixels.

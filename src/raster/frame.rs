@@ -82,7 +82,7 @@ impl<'a> Frame<'a> {
     /// spare draws 320 × 200 as thirteen bands.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and a band that is empty or reaches beyond the frame.
+    /// The errors of [`new`](Self::new); a band that is empty or reaches beyond the frame.
     pub fn band(
         pixels: &'a mut [u8],
         width: u32,
@@ -114,7 +114,7 @@ impl<'a> Frame<'a> {
         self.width
     }
 
-    /// Rows of the whole frame.
+    /// The number of rows of the whole frame.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
@@ -237,7 +237,7 @@ mod tests {
         assert!(Frame::new(&mut bytes, 1, 8, 9).is_ok(), "the last row needs only its pixels");
     }
 
-    /// Neither the bytes between rows are cleared nor those after the last, whether or not rows adjoin.
+    /// Clearing changes neither the bytes between rows nor those after the last, whether or not rows adjoin.
     #[test]
     fn clearing_leaves_all_other_bytes_alone() {
         for pitch in 7..10 {

@@ -21,7 +21,7 @@ pub enum Interpolation {
     Flat(u8),
     /// Gouraud's shading as the sources print it: vertices on whole pixels, slopes and steps truncated, no half added.
     ///
-    /// It has no exact coverage. Where another method determines the pixels, it contributes only the shades.
+    /// Its coverage is not exact. Where another method determines the pixels, it contributes only the shades.
     GouraudVintage,
     /// Linear between the vertices, each row of the triangle one span: the start is exact, with one addition per pixel
     /// from there on.
@@ -36,7 +36,7 @@ pub enum Interpolation {
     /// Linear on the face in space, so perspective-correct: one quotient per pixel, the shade nearest to exact. It uses
     /// the depths of the vertices as 1/w.
     GouraudHyperbolic,
-    /// Linear on the face in space in f32: shade/w and 1/w linear, one division per pixel.
+    /// Linear on the face in space, computed in f32: shade/w and 1/w are linear, with one division per pixel.
     ///
     /// It exists only with an allocator, so that the raster of a microcontroller without floating point links no
     /// routine for it.

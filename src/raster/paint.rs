@@ -67,7 +67,8 @@ impl RowShader {
         }
     }
 
-    /// Separate, so that the loops for linear shades contain nothing else.
+    /// The shader of any other interpolation; a separate function, so that the loops for linear shades contain nothing
+    /// else.
     #[inline(never)]
     fn of_another_kind(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {
@@ -215,7 +216,7 @@ impl RowShader {
                 for (i, shade) in shades.iter_mut().enumerate() {
                     let k = i as f64;
                     let of = |[[n, dn], [d, dd]]: [[f64; 2]; 2]| nearest_whole((n + k * dn) / (d + k * dd));
-                    // Rounded to a whole number it is less than 1 off: see `fill_estimated_quotients`.
+                    // The estimate, rounded to a whole number, is less than 1 off: see `fill_estimated_quotients`.
                     let estimate = estimates.map_or(0, of);
                     *shade = if estimate & 0xFF == 0 {
                         // A column is below 4,096.

@@ -275,7 +275,7 @@ pub(super) struct RowEnds<S: Lanes8> {
     /// Columns relative to the box's first, as sums with `ROUND_MAGIC`: the first pixel, and the one after the last.
     pub(super) left: S::F64,
     right: S::F64,
-    /// Their indices.
+    /// The indices of the rows.
     pub(super) j: S::F64,
 }
 
@@ -406,28 +406,28 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Returns whether lanes are plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while inlining
-/// makes a build take half as long again or more. Vectors are aligned to their size.
+/// Returns whether lanes are plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while
+/// inlining makes a build take half as long again or more. Vectors are aligned to their size.
 #[inline(always)]
 const fn are_arrays<S: Lanes8>() -> bool {
     align_of::<S::F64>() < 16
 }
 
-/// Returns whether each row is computed and listed by a call: in plain arrays, and for spans with many columns in narrow
-/// vectors, which take long to compile, too.
+/// Returns whether each row is computed and listed by a call: in plain arrays, and for spans with many columns in
+/// narrow vectors, which take long to compile, too.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
 }
 
-/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that the
-/// call is not compiled for the other levels.
+/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that
+/// the call is not compiled for the other levels.
 #[inline(always)]
 pub(super) fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
     if const { are_arrays::<S>() } { s.apart(part) } else { part() }
 }
 
-/// [`Shades8::append`].
+/// Appends spans by [`Shades8::append`], which is called or inlined as the level requires.
 #[inline(always)]
 fn append<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,

@@ -43,14 +43,14 @@ use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, three};
 use crate::simd::Lanes8;
 
-/// Layout of a frame's pixels.
+/// The layout of a frame's pixels.
 #[derive(Clone, Copy)]
 pub(super) struct FrameLayout {
     /// The row whose pixels come first.
     pub(super) first_row: u32,
-    /// Pixels from one row to the next, at most 2¹⁶.
+    /// The number of pixels from one row to the next, at most 2¹⁶.
     pub(super) pitch: u32,
-    /// Cells of the depth buffer from one row to the next.
+    /// The number of cells of the depth buffer from one row to the next.
     pub(super) width: u32,
     /// The depth buffer's [base](super::depth::DepthBuffer), or 0.
     pub(super) depth_base: u32,
@@ -59,7 +59,7 @@ pub(super) struct FrameLayout {
 pub(super) type Floats = [f64; LANES];
 pub(super) type Ints = [i32; LANES];
 
-/// Corners of eight triangles. Lanes without a triangle hold arbitrary values.
+/// The corners of eight triangles. Lanes without a triangle hold arbitrary values.
 pub(super) struct Corners8 {
     /// A [`ScreenPos`](super::columns::ScreenPos) each.
     at: [[i64; LANES]; 3],
@@ -74,8 +74,7 @@ impl Corners8 {
     pub(super) const NONE: Self =
         Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
 
-    /// Reads the first eight of these triangles, their depths only with `DEPTHS`. With `FLAT`, each
-    /// has a single shade.
+    /// Reads the first eight of these triangles, with depths only if `DEPTHS`. With `FLAT`, each has a single shade.
     #[inline(always)]
     pub(super) fn gather<const DEPTHS: bool, const FLAT: bool>(
         &mut self,
@@ -155,8 +154,8 @@ impl Edges {
     }
 }
 
-/// Planes of a value of 0 to 0xFF00 over eight triangles: `nearest((n + j·per_row + i·per_column) · inverse)` at column i of
-/// row j, the half included, with the inverse of the triangle's set-up.
+/// Planes of a value of 0 to 0xFF00 over eight triangles: `nearest((n + j·per_row + i·per_column) · inverse)` at column
+/// i of row j, the half included, with the inverse of the triangle's set-up.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct ValuePlanes8 {
@@ -377,8 +376,8 @@ impl<S: Lanes8> Basis<S> {
         [gx, s.xor_sign(s.neg_mul_add(d1, dx2, s.mul(d2, dx1)), self.signed)]
     }
 
-    /// The planes of a value times the area, given at the corners by height: at the box's first pixel, and its changes per
-    /// row and per column. Products and sums are rounded: see [`conditions`](Self::conditions).
+    /// The planes of a value times the area, given at the corners by height: at the box's first pixel, and its changes
+    /// per row and per column. Products and sums are rounded: see [`conditions`](Self::conditions).
     #[inline(always)]
     pub(super) fn plane(&self, s: S, [a, b, c]: [S::F64; 3]) -> [S::F64; 3] {
         let ([x, y], pixel) = (self.first, s.splat_f64(256.0));
@@ -387,8 +386,8 @@ impl<S: Lanes8> Basis<S> {
         [at_first, s.mul(gy, pixel), s.mul(gx, pixel)]
     }
 
-    /// How accurate [planes](Self::plane) are. For a value of up to V at the corners, each rounded once, a box of W × H units,
-    /// ε = 2⁻⁵³, and B = W·H·V, in units of εB:
+    /// How accurate [planes](Self::plane) are. For a value of up to V at the corners, each rounded once, a box of W × H
+    /// units, ε = 2⁻⁵³, and B = W·H·V, in units of εB:
     ///
     /// | | magnitude | off by |
     /// |---|---:|---:|
@@ -399,8 +398,8 @@ impl<S: Lanes8> Basis<S> {
     ///
     /// A quotient of two such sums, the divisor of depths of which the greatest is V and the least v, is at most Q. The
     /// numerator's B is at most Q times the divisor's, and the divisor at a pixel at least the area A times v. So with
-    /// X = W·H·V / (A·v) the quotient is off by 202·ε·Q·X for each unit of Q's. Returns numerator and denominator of X, given
-    /// the depths.
+    /// X = W·H·V / (A·v) the quotient is off by 202·ε·Q·X for each unit of Q's. Returns numerator and denominator of X,
+    /// given the depths.
     #[inline(always)]
     pub(super) fn conditions(&self, s: S, [least, greatest]: [S::F64; 2]) -> [S::F64; 2] {
         let [width, height] = self.sides(s);
@@ -431,7 +430,7 @@ impl<S: Lanes8> Basis<S> {
     pub(super) fn weight(&self, s: S, corner: usize) -> (S::F64, [S::F64; 3]) {
         let ([x, y], pixel, zero) = (self.first, s.splat_f64(256.0), s.splat_f64(0.0));
         let (one, minus_one) = (s.splat_f64(1.0), s.splat_f64(-1.0));
-        // Its difference at the second and the third corner from that at the first.
+        // The weight at the second and at the third corner, less that at the first, in units of the area.
         let differences = [[minus_one, minus_one], [one, zero], [zero, one]];
         let [gx, gy] = self.gradient(s, differences[corner % 3]);
         let at_first = if corner == 0 { self.area } else { zero };

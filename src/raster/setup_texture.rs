@@ -3,14 +3,14 @@
 //! Coordinates that are linear on the screen are set up like shades, with the quotients of [`setup`](super::setup).
 //! Where a triangle's coordinates differ by less than 2²², 64 texels, gradients are below 2³⁹, no sum of terms reaches
 //! 2⁵², and f64 holds all multiples of ½ below that. A quotient is below 2²² and off by 2⁻³⁰, its margin at least
-//! 2⁻²⁷·¹². Where corners are farther apart, or a triangle is larger, each number is split into an integer and a remainder
-//! below the area of at most 2³⁴: with columns below 2¹⁰ and rows below 2¹², sums of remainders stay below 2⁴⁷, quotients
-//! below 2¹³, so they are off by less than 2⁻³⁷, with a margin of 2⁻³⁵.
+//! 2⁻²⁷·¹². Where corners are farther apart, or a triangle is larger, each number is split into an integer and a
+//! remainder below the area of at most 2³⁴: with columns below 2¹⁰ and rows below 2¹², sums of remainders stay below
+//! 2⁴⁷, quotients below 2¹³, so they are off by less than 2⁻³⁷, with a margin of 2⁻³⁵.
 //!
-//! Coordinates that are linear on the face are quotients of two values with a plane each in f64; their accuracy is that of
-//! [`Basis::conditions`]. With Q the greatest coordinate and Q·X up to 2⁴³ they are off by less than 0.2; other triangles
-//! get a divisor below 0, which decides nothing. A triangle's coordinates are relative to the texel of a corner, its base,
-//! so that f32 resolves them if the other corners are near.
+//! Coordinates that are linear on the face are quotients of two values with a plane each in f64; their accuracy is that
+//! of [`Basis::conditions`]. With Q the greatest coordinate and Q·X up to 2⁴³ they are off by less than 0.2; other
+//! triangles get a divisor below 0, which decides nothing. A triangle's coordinates are relative to the texel of a
+//! corner, its base, so that f32 resolves them if the other corners are near.
 
 use super::columns::{Picks, Triangles, eight_corners};
 use super::pick::Pick;
@@ -195,7 +195,8 @@ impl AffinePlanes8 {
             let [first, per_column, per_row] = plane.parts(pixel);
             (self.first[i][lane], self.whole_per_row[i][lane]) = (first.0, per_row.0);
             self.whole_per_column[i][lane] = per_column.0;
-            // All below 2⁵³. The quotient's floor is the nearest integer of one that is less by ½ and 1 / (2·area) more.
+            // All below 2⁵³. The quotient's floor is the nearest integer of one that is less by ½ and 1 / (2·area)
+            // more.
             self.n[i][lane] = first.1 as f64 - (area.get() as f64 * 0.5 - 0.5);
             (self.per_row[i][lane], self.per_column[i][lane]) = (per_row.1 as f64, per_column.1 as f64);
             // Modulo 2³².
@@ -251,8 +252,8 @@ fn level_of<S: Lanes8>(s: S, quotient: S::F64) -> S::I32 {
     s.max_i32(s.sub_i32(s.shr_i32(upper, 20), s.splat_i32(1_023)), s.splat_i32(0))
 }
 
-/// Bounds of twice the length of a step, given u, v and 1 of the corners, times their depths, and the changes of the planes:
-/// the least and the greatest, times the square of the depth.
+/// Bounds of twice the length of a step, given u, v and 1 of the corners, times their depths, and the changes of the
+/// planes: the least and the greatest, times the square of the depth.
 #[inline(always)]
 fn steps_of_corners<S: Lanes8>(s: S, values: &[[S::F64; 3]; 3], steps: &[Floats; 3]) -> [S::F64; 2] {
     let zero = s.splat_f64(0.0);
@@ -272,7 +273,8 @@ fn steps_of_corners<S: Lanes8>(s: S, values: &[[S::F64; 3]; 3], steps: &[Floats;
     [doubled(s, shortest[0], shortest[1]), doubled(s, longest[0], longest[1])]
 }
 
-/// Coordinates that are linear on the face, of eight triangles: planes of u, v and 1, each times the depth and the area.
+/// Coordinates that are linear on the face, of eight triangles: planes of u, v and 1, each times the depth and the
+/// area.
 #[derive(Clone, Debug)]
 pub(super) struct PerspectivePlanes8 {
     /// At the box's first pixel.
@@ -388,8 +390,8 @@ impl PerspectivePlanes8 {
         starts
     }
 
-    /// Finds where [`level`](Self::level) is accurate: given Q·W·H times the greatest depth, and A times the least, whose
-    /// quotient is Q·X; and W + H, and both depths.
+    /// Finds where [`level`](Self::level) is accurate: given Q·W·H times the greatest depth, and A times the least,
+    /// whose quotient is Q·X; and W + H, and both depths.
     #[inline(always)]
     fn set_up_levels<S: Lanes8>(
         &mut self,
@@ -404,15 +406,16 @@ impl PerspectivePlanes8 {
         self.fits_levels = s.to_bitmask(s.and(is_accurate, s.is_less(s.splat_f64(65_536.0), least)));
     }
 
-    /// Finds the triangles all of whose pixels have the same level, from bounds of the quotient of [`level`](Self::level)
-    /// over a whole triangle. Levels beyond the last count as the last.
+    /// Finds the triangles all of whose pixels have the same level, from bounds of the quotient of
+    /// [`level`](Self::level) over a whole triangle. Levels beyond the last count as the last.
     ///
-    /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This is linear on
-    /// the triangle, as is the same by rows, and D is. So each lies between the values at the corners, and G / D² between
-    /// the least G over the greatest D² and the greatest G over the least D².
+    /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This is
+    /// linear on the triangle, as is the same by rows, and D is. So each lies between the values at the corners, and G
+    /// / D² between the least G over the greatest D² and the greatest G over the least D².
     ///
-    /// Depths differ by a factor of at most 2, so the greatest D² is at most 4 times any other: where the level is above 0, G,
-    /// which is off by less than 1.2 · D², and the square of the depth are together off by less than 2⁻¹⁴ of themselves.
+    /// Depths differ by a factor of at most 2, so the greatest D² is at most 4 times any other: where the level is
+    /// above 0, G, which is off by less than 1.2 · D², and the square of the depth are together off by less than 2⁻¹⁴
+    /// of themselves.
     #[inline(always)]
     fn set_up_single_levels<S: Lanes8>(
         &mut self,
@@ -446,19 +449,20 @@ impl PerspectivePlanes8 {
     /// The level of a texture at pixel `k` of a span of triangle `lane`, from the sums at its first, or `None` where an
     /// estimate cannot decide.
     ///
-    /// With N and D the sums, ∂u/∂x = (∂N/∂x · D − N · ∂D/∂x) / D². So the level is the least n at which twice the length
-    /// of the longer step, G / D², is at most 2ⁿ · 2 · 181/128 texels: G / (185,344 · D²) ≤ 2ⁿ.
+    /// With N and D the sums, ∂u/∂x = (∂N/∂x · D − N · ∂D/∂x) / D². So the level is the least n at which twice the
+    /// length of the longer step, G / D², is at most 2ⁿ · 2 · 181/128 texels: G / (185,344 · D²) ≤ 2ⁿ.
     ///
-    /// [`LevelPlane`](super::reference::level::LevelPlane) takes the depth D / A in whole sixteenths, which are at least
-    /// 2²⁰ where depths are at least 2¹⁶: its square is off by 2⁻¹⁹ of itself. With Q the greatest coordinate from the base
-    /// on, and κ = (magnitudes of the weights' changes) · (greatest depth) / (A · least depth), the changes of N and D are at
-    /// most Q·κ·D and κ·D. By [`Basis::conditions`], in units of 2⁻⁵¹, N is off by 26·Q·X·D, D by 26·X·D, and their changes
-    /// by 1.75·Q·κ·D and 1.75·κ·D; so with the roundings here, G, the sum of three differences of two products, is off by
-    /// less than 3 · (52·X + 6) · Q·κ·D², or 174·X·Q·κ·D². Where Q·X·κ is up to 2⁴⁴ that is 1.4 · D², 2⁻¹⁷ of the least G
-    /// above level 0. So the quotient is off by less than 2⁻¹⁶ of itself, or below 1.
+    /// [`LevelPlane`](super::reference::level::LevelPlane) takes the depth D / A in whole sixteenths, which are at
+    /// least 2²⁰ where depths are at least 2¹⁶: its square is off by 2⁻¹⁹ of itself. With Q the greatest coordinate
+    /// from the base on, and κ = (magnitudes of the weights' changes) · (greatest depth) / (A · least depth), the
+    /// changes of N and D are at most Q·κ·D and κ·D. By [`Basis::conditions`], in units of 2⁻⁵¹, N is off by 26·Q·X·D,
+    /// D by 26·X·D, and their changes by 1.75·Q·κ·D and 1.75·κ·D; so with the roundings here, G, the sum of three
+    /// differences of two products, is off by less than 3 · (52·X + 6) · Q·κ·D², or 174·X·Q·κ·D². Where Q·X·κ is up to
+    /// 2⁴⁴ that is 1.4 · D², 2⁻¹⁷ of the least G above level 0. So the quotient is off by less than 2⁻¹⁶ of itself, or
+    /// below 1.
     ///
-    /// For a triangle [alone](Self::set_up_alone), whose sums are those of exact weights, 3 · (5κ + 192κ²) · Q takes the
-    /// place of 174·X·Q·κ: 64 steps are off by 64 times as much as one.
+    /// For a triangle [alone](Self::set_up_alone), whose sums are those of exact weights, 3 · (5κ + 192κ²) · Q takes
+    /// the place of 174·X·Q·κ: 64 steps are off by 64 times as much as one.
     #[inline(always)]
     pub(super) fn level(&self, lane: usize, [u, v, d]: [f64; 3], k: f64, last: u32) -> Option<u32> {
         let lane = lane % LANES;

@@ -64,7 +64,7 @@ pub struct Accumulator {
     pub start: u32,
     /// The step; the loop adds it modulo 2¹⁶ (2³² in 16.16).
     pub step: i64,
-    /// Additions from there to the pixel.
+    /// The number of additions from there to the pixel.
     pub steps: i32,
     /// 8, or 16.
     pub fraction_bits: u32,
@@ -73,7 +73,7 @@ pub struct Accumulator {
 }
 
 impl Accumulator {
-    /// The sum after this many steps: what AX holds, or EAX.
+    /// The sum after this many steps: the contents of AX, or of EAX.
     #[must_use]
     pub fn after(&self, steps: i32) -> u32 {
         // Wrapping is intended: the loop's register has this many bits.
@@ -88,11 +88,11 @@ impl Accumulator {
     }
 }
 
-/// Trace of a value from a triangle's corners to one of its pixels.
+/// The trace of a value from a triangle's corners to one of its pixels.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct ShadeTrace {
-    /// Progression along the row.
+    /// The progression along the row.
     pub way: Progression,
     /// The exact value at the pixel's centre, in 1/256 shade: linear on the screen or, if the shading is, on the face.
     /// `None` for a flat triangle.
@@ -179,7 +179,7 @@ fn on_face(plane: &HyperbolicPlane, x: i32, y: i32) -> Ratio {
     Ratio { numerator, denominator }
 }
 
-/// The row of a pixel that a triangle draws in a frame this wide: by exact coverage, or by that of `interpolation`.
+/// The row of a pixel that a triangle draws in a frame of this width, by exact coverage or by that of `interpolation`.
 pub fn row_of(
     triangle: &SortedTriangle,
     interpolation: Option<Interpolation>,

@@ -103,7 +103,7 @@ impl ShadedFaces<'_> {
         self.steps[batch].words[0][lane].cast_unsigned()
     }
 
-    /// Perspective-correct bytes of a span, and arbitrary ones after them to fill blocks of eight. Returns false if
+    /// The perspective-correct bytes of a span, followed by arbitrary ones to fill blocks of eight. Returns false if
     /// estimates cannot decide all of them.
     #[inline(always)]
     fn estimate<S: Lanes8>(&self, s: S, (span, starts): (Span, [f64; 2]), bytes: &mut Bytes) -> bool {
@@ -112,7 +112,7 @@ impl ShadedFaces<'_> {
         fill_estimated_blocks(s, (bytes, span.length as usize), [n, dn[lane]], [d, dd[lane]])
     }
 
-    /// [`estimate`](Self::estimate) in exact arithmetic.
+    /// Computes the bytes of [`estimate`](Self::estimate) in exact arithmetic.
     #[cold]
     #[inline(never)]
     fn exact_bytes(&self, span: Span, bytes: &mut Bytes) {
@@ -124,7 +124,7 @@ impl ShadedFaces<'_> {
         plane.fill(x, y, &mut bytes[..(span.length as usize).min(SpanBytes::LENGTH)]);
     }
 
-    /// Bytes of a span in f32, and arbitrary ones after them to fill blocks of eight.
+    /// The bytes of a span in f32, followed by arbitrary ones to fill blocks of eight.
     #[cfg(feature = "alloc")]
     #[inline(always)]
     fn quotients(&self, (span, [n, d]): (Span, [f64; 2]), bytes: &mut Bytes) {
@@ -153,7 +153,8 @@ pub(super) struct Shaded8<'a> {
     area: Floats,
     /// Perspective-correct: numerator and divisor, each at the box's first pixel and its change per row.
     planes: [[Floats; 2]; 2],
-    /// In f32: the weight of each corner, by height: at the box's first pixel, its change per row, and per column.
+    /// In f32: the weight of each corner, by height: its value at the box's first pixel, and its changes per row and
+    /// column.
     weights: [[Floats; 3]; 3],
     /// Each corner's depth times its shade, and its depth.
     values: [[Floats; 2]; 3],
@@ -193,7 +194,8 @@ impl<'a> Shaded8<'a> {
     fn set_up_hyperbolic<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
         let [a, b, c] = basis.order.load(s, &corners.shade);
         let depths = basis.depths(s, corners);
-        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see `HyperbolicPlane::estimates`.
+        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see
+        // `HyperbolicPlane::estimates`.
         let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
         let half = s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0));
         let numerators = three(
@@ -472,7 +474,7 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     }
 }
 
-/// The triangle of a span, among those whose steps are stored.
+/// The index of a span's triangle, among those whose steps are stored.
 #[inline(always)]
 fn face_of(span: Span) -> usize {
     // The lower half.

@@ -1,8 +1,8 @@
 //! Turns picked triangles into spans, eight at a time.
 //!
-//! Half of the triangles of a detailed model cover no pixel centre, and most of the others only a
-//! few. So the work per triangle has to be small: no sorting by branches, no division of its own,
-//! no loop for a row of one pixel. A triangle is culled once, set up once, and becomes spans once:
+//! Half of the triangles of a detailed model cover no pixel centre, and most of the others only a few. So the work per
+//! triangle has to be small: no sorting by branches, no division for each triangle, no loop for a row of one pixel. A
+//! triangle is culled once, set up once, and becomes spans once:
 //!
 //! | stage | lanes | what |
 //! |---|---|---|
@@ -130,7 +130,8 @@ impl<D: Cell> Raster<'_, D> {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws a triangle with linear shades that is too large for set-up in f64: walks down its edges, and lists its rows.
+    /// Draws a triangle with linear shades that is too large for set-up in f64: walks down its edges, and lists its
+    /// rows.
     #[inline(never)]
     fn list_rows(
         &mut self,
@@ -180,7 +181,7 @@ impl<D: Cell> Raster<'_, D> {
     }
 }
 
-/// Drawing area of triangles: the pixels' layout, and the clip rectangle.
+/// The drawing area of triangles: the pixels' layout, and the clip rectangle.
 pub(super) type Place = (FrameLayout, Rect);
 
 /// Draws triangles with linear shades, none of which is unbatched; if there are cells, only where they are nearer.
@@ -270,7 +271,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
         return DrawStats::default();
     }
     let of_pixels = (target.pixels.len(), layout.pitch);
-    // Depths without cells are not used.
+    // Depths are not used without cells.
     let has_cells = target.cells.is_some();
     list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
     let mut setup = TriangleSetup8::NONE;

@@ -47,7 +47,7 @@ impl<'a> Raster<'a> {
 
     /// Draws with the next depth buffer of `memory`, as if cleared. Depths must be from 1 to 2³⁰, as those of a
     /// camera's vertices are: a depth of 0 or above 2³⁰ can be hidden by what earlier frames drew, or show through it.
-    /// So can [`Interpolation::GouraudVintage`], which draws beyond the edges of a triangle.
+    /// The same can happen with [`Interpolation::GouraudVintage`], which draws beyond the edges of a triangle.
     #[cfg(feature = "alloc")]
     #[must_use]
     pub fn with_depth_memory(self, memory: &'a mut DepthMemory) -> Raster<'a> {
@@ -73,9 +73,8 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// Height of a triangle, in 256ths of a pixel, from which its rows are worth the eight-lane
-/// set-up: 32 pixels. (With AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows
-/// 1,320 and 690 ns.)
+/// The height of a triangle, in 256ths of a pixel, from which the eight-lane set-up pays for its rows: 32 pixels. (With
+/// AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows 1,320 and 690 ns.)
 const TALL: i64 = 32 << 8;
 
 /// The simplest shading that gives the same bytes: rows of up to 64 pixels are not reseeded.
@@ -89,8 +88,7 @@ fn simplest(vertices: &[Vertex; 3], interpolation: Interpolation) -> Interpolati
 }
 
 impl<'a, D: Cell> Raster<'a, D> {
-    /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as
-    /// without it.
+    /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as without clipping.
     #[must_use]
     pub fn with_clip(mut self, clip: Rect) -> Self {
         self.clip = clip.intersection(self.frame.bounds());
@@ -168,15 +166,16 @@ impl<'a, D: Cell> Raster<'a, D> {
         if interpolation.has_exact_cover() {
             triangle.rows(width, clip, draw);
         } else if triangle.doubled_area != 0 {
-            // As the sources print them. Depths are those of the triangle's plane, also beyond its edges, where they may
-            // wrap.
+            // As the sources print them. Depths are those of the triangle's plane, also beyond its edges, where they
+            // may wrap.
             VintageTriangle::new(&triangle, triangle.shades()).rows(width, clip, &mut draw);
         }
         drawn
     }
 
-    /// Fills the rows of a triangle without a depth test, each from the shade and the step that `shades` gives it. Its
-    /// values fit into registers, and no branch depends on lengths: it takes a quarter less time than [`RowShader`].
+    /// Fills the rows of a triangle without a depth test, each from the shade and the step that `shades` returns for
+    /// it. All values fit into registers, and no branch depends on lengths: this takes a quarter less time than
+    /// [`RowShader`].
     #[inline(always)]
     fn fill_rows(&mut self, triangle: &SortedTriangle, mut shades: impl FnMut(&Row) -> (u16, u16)) -> DrawStats {
         let (mut drawn, kernel) = (DrawStats::default(), self.kernel);

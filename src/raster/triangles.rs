@@ -36,8 +36,8 @@ pub(super) const fn corner_indices<const N: usize>() -> [[u32; 3]; N] {
     indices
 }
 
-/// Leaves out triangles that miss all pixel centres, one by one, while most of a list do. That costs less than storing
-/// and culling them: 5 ns instead of 9 for triangles of 0.04 pixels.
+/// Leaves out triangles that miss all pixel centres, one by one, as long as most of a list's triangles do. That costs
+/// less than storing and culling them: 5 ns instead of 9 for triangles of 0.04 pixels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sieve {
     is_on: bool,
@@ -63,9 +63,9 @@ impl Sieve {
 struct Pending<'t, const N: usize> {
     drawn_by: Interpolation,
     triangles: [(&'t [Vertex; 3], Interpolation); N],
-    /// Positions of all, for culling.
+    /// The positions of all triangles, for culling.
     all: Corners<ScreenPos, N>,
-    /// The corners of those that are drawn.
+    /// The corners of the triangles that are drawn.
     at: Corners<ScreenPos, N>,
     depth: Corners<u32, N>,
     shade: Corners<[U8F8; 2], N>,
@@ -95,7 +95,7 @@ impl<'t, const N: usize> Pending<'t, N> {
         put_positions(&mut self.all, count, vertices);
     }
 
-    /// Copies the corners of the triangle of a pick. It becomes number `to` of those that are drawn.
+    /// Copies the corners of the triangle of a pick, which becomes number `to` of those that are drawn.
     #[inline(always)]
     fn copy(&mut self, pick: Pick, to: usize, with_depth: bool) {
         let (vertices, interpolation) = self.triangles[pick.index() % N];
@@ -116,7 +116,7 @@ impl<'t, const N: usize> Pending<'t, N> {
     }
 }
 
-/// Stores the positions of triangle `at` among those of all.
+/// Stores the positions of triangle `at` in the list of all.
 #[inline(always)]
 pub(super) fn put_positions<const N: usize>(to: &mut Corners<ScreenPos, N>, at: usize, vertices: &[Vertex; 3]) {
     for (corner, vertex) in vertices.iter().enumerate() {
@@ -195,7 +195,7 @@ fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
     }
 }
 
-/// The shading with which a triangle is drawn: a flat one like one whose rows are not reseeded.
+/// The interpolation by which a triangle is drawn: a flat triangle is drawn like one whose rows are not reseeded.
 fn drawn_by(interpolation: Interpolation) -> Interpolation {
     match interpolation {
         Interpolation::Flat(_) => Interpolation::Gouraud,
@@ -205,8 +205,8 @@ fn drawn_by(interpolation: Interpolation) -> Interpolation {
 
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles in the order given: bytes, depths and counts are those of calling [`triangle`](Self::triangle)
-    /// for each. All but vintage ones are culled 128 and set up eight at a time, which is several times as fast for
-    /// small ones.
+    /// for each. All but vintage ones are culled 128 at a time and set up eight at a time, which is several times as
+    /// fast for small ones.
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
@@ -349,7 +349,8 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    /// Draws one triangle of many rows, eight rows at a time. As a list of one it would take 8 % longer, to clear memory.
+    /// Draws one triangle of many rows, eight rows at a time. As a list of one triangle, it would take 8 % longer,
+    /// because the list's memory would have to be cleared.
     #[inline(never)]
     pub(super) fn tall_triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         const INDICES: [[u32; 3]; 1] = [[0, 1, 2]];

@@ -78,7 +78,7 @@ impl Vertex {
         Self { depth, ..self }
     }
 
-    /// A vertex known to be valid: it was one before, or is valid by construction.
+    /// A vertex known to be valid: it was made from a valid one, or is valid by construction.
     #[inline]
     pub(crate) fn of_projected(x: I24F8, y: I24F8, shade: U8F8, depth: u32) -> Self {
         debug_assert!(Self::new(x, y, shade, depth).is_ok(), "({x:?}, {y:?}), {shade:?}");
@@ -128,7 +128,7 @@ impl Vertex {
 pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
     let [a, b, c] = corners;
     let no_centre = |[a, b, c]: [I24F8; 3]| a.min(b).min(c).first_centre() == a.max(b).max(c).first_centre();
-    // Both without a branch, as one for each would be mispredicted twice as often.
+    // Both are computed without a branch in between: a branch for each would be mispredicted twice as often.
     no_centre([a.x(), b.x(), c.x()]) | no_centre([a.y(), b.y(), c.y()])
 }
 

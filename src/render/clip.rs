@@ -1,9 +1,8 @@
 //! Clipping in homogeneous space: the near plane first, then the guard band, in f64.
 //!
-//! Faces are clipped only where the raster cannot take them: nearer than the near plane, or
-//! projected more than 4,096 pixels away. The screen's edges need no clipping, since the raster
-//! omits exactly what lies beyond them. [`raster::clip`](crate::raster::clip) visits the planes in
-//! an order that leaves no cracks.
+//! Faces are clipped only where the raster cannot draw them: nearer than the near plane, or projected more than 4,096
+//! pixels away. The screen's edges need no clipping, since the raster omits exactly what lies beyond them.
+//! [`raster::clip`](crate::raster::clip) visits the planes in an order that leaves no cracks.
 
 use crate::fixed::U8F8;
 use crate::raster::clip::{Clipped, Corners, clip as clip_triangle};

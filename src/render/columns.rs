@@ -28,8 +28,8 @@ pub(super) struct VertexColumns {
 }
 
 impl VertexColumns {
-    /// Makes room for `count` vertices with unspecified values. They must then be projected, and
-    /// lit or left without light. Texture coordinates stay as they are.
+    /// Makes room for `count` vertices with unspecified values. They must then be projected, and either lit or given
+    /// the shade without light. Texture coordinates stay as they are.
     pub(super) fn begin(&mut self, count: usize) {
         self.at.resize(count, ScreenPos::NEEDS_CLIPPING);
         self.depth.resize(count, 0);
@@ -68,7 +68,7 @@ pub(super) struct AddedTriangles {
 }
 
 impl AddedTriangles {
-    /// Number of added triangles at which the pending ones are drawn. The parts of one more face may come on top.
+    /// The number of added triangles at which the pending ones are drawn. The parts of one more face may exceed it.
     pub(super) const MAX_WAITING: usize = 64;
     /// The most corners and triangles that one face adds, see `raster::clip`.
     pub(super) const MAX_OF_FACE: usize = 8;
@@ -125,7 +125,7 @@ impl AddedTriangles {
         self.indices.len()
     }
 
-    /// Triangles added since others were kept or removed.
+    /// The number of triangles added since others were kept or removed.
     pub(super) fn waiting(&self) -> usize {
         self.indices.len() - self.kept.1
     }
@@ -144,18 +144,18 @@ impl AddedTriangles {
         &self.faces
     }
 
-    /// Keeps all of them until the frame is drawn.
+    /// Keeps all added triangles until the frame is drawn.
     pub(super) fn keep(&mut self) {
         self.kept = (self.vertices.at.len(), self.indices.len());
     }
 
-    /// Removes those that are not kept.
+    /// Removes the added triangles that are not kept.
     pub(super) fn drop_waiting(&mut self) {
         let (vertices, triangles) = self.kept;
         self.resize(vertices, triangles);
     }
 
-    /// Removes all of them.
+    /// Removes all added triangles.
     pub(super) fn clear(&mut self) {
         self.kept = (0, 0);
         self.drop_waiting();

@@ -1,4 +1,4 @@
-//! Every triangle of a frame with everything the raster would get, for the laboratory.
+//! Every triangle of a frame with everything that the raster would receive, for the laboratory.
 
 use super::hidden_surfaces::each_run;
 use super::pipelines::Pipelines;
@@ -38,9 +38,9 @@ pub struct DrawnEffects<'a> {
 }
 
 impl Renderer {
-    /// Passes every triangle that [`draw`](Self::draw) would draw to `visit`, in the order of
-    /// [`for_each_triangle`](Self::for_each_triangle), with everything the raster would get. Draws
-    /// nothing, and does not affect later frames.
+    /// Calls `visit` for every triangle that [`draw`](Self::draw) would draw, in the order of
+    /// [`for_each_triangle`](Self::for_each_triangle), with everything that the raster would receive. Draws nothing,
+    /// and does not affect later frames.
     pub(crate) fn each_triangle(
         &mut self,
         scene: &Scene,

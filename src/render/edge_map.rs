@@ -6,7 +6,7 @@
 
 use alloc::vec::Vec;
 
-/// Marks a free slot: an edge's ends differ.
+/// Marks a free slot; it is not an edge, because the ends of an edge differ.
 const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 
 /// Map from an edge, a pair of different numbers, to a number.
@@ -45,7 +45,7 @@ impl EdgeMap {
         }
     }
 
-    /// The slot of an edge, or the one where it would be; `None` in a table without slots.
+    /// The slot of an edge, or the one where it would be inserted; `None` in a table without slots.
     fn place(&self, (a, b): (u32, u32)) -> Option<usize> {
         let last = self.places.len().checked_sub(1)?;
         // Knuth's multiplicative hash (The Art of Computer Programming, 6.4), 2⁶⁴ over the golden ratio. Its upper

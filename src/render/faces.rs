@@ -1,4 +1,4 @@
-//! Input for the faces of an object, and the light of flat-shaded faces.
+//! The input from which an object's faces are drawn, and the light of flat-shaded faces.
 
 use alloc::vec::Vec;
 
@@ -34,12 +34,12 @@ pub(super) struct Face {
 /// The points at which flat-shaded faces are lit: their centres, and their normals there.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FacePoints {
-    /// In a list of their own, since suns alone need nothing else.
+    /// In a separate list, since suns alone need nothing else.
     normals: Vec<Vec3>,
     centres: Vec<Vec3>,
 }
 
-/// One object in one frame: what its faces are drawn from.
+/// The data of one object in one frame from which its faces are drawn.
 #[derive(Clone, Copy)]
 pub(super) struct Faces<'a> {
     pub(super) shading: Shading,
@@ -61,7 +61,7 @@ impl<'a> Faces<'a> {
         self.columns.triangles(&self.geometry)
     }
 
-    /// The single shade of a face, or its three channels: at its middle, by its own normal.
+    /// The single shade of a face, or its three channels, lit at its centre with its own normal.
     pub(super) fn flat(&self, face: Face) -> [U8F8; 3] {
         let FacePoints { normals, centres } = self.points;
         let (normal, centre) = (normals[face.index as usize], centres[face.index as usize]);
@@ -80,7 +80,7 @@ impl<'a> Faces<'a> {
         [material.respond(material.shade(if face.back_facing { back } else { front })); 3]
     }
 
-    /// The face of a pick.
+    /// The face that a pick refers to.
     pub(super) fn face(&self, pick: Pick) -> Face {
         let index = pick.index();
         Face {
@@ -146,7 +146,7 @@ impl<'a> Faces<'a> {
 }
 
 compiled_for_each_level! {
-    /// The shades of picked flat-shaded faces, each by its own normal: suns, no highlights, and one channel.
+    /// The shades of picked flat-shaded faces, each lit with its own normal: suns, no highlights, and one channel.
     fn light_faces[const BOTH: bool][BOTH](
         faces: &Faces<'_>,
         picks: &[u32],
@@ -183,7 +183,7 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
 }
 
 compiled_for_each_level! {
-    /// The shades of picked flat-shaded faces, each by its own normal and at its middle: all light, on one channel.
+    /// The shades of picked flat-shaded faces, each lit at its centre with its own normal: all light, on one channel.
     fn light_faces_fully[][](
         faces: &Faces<'_>,
         picks: &[u32],
@@ -200,7 +200,7 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, picks: &[u32], fl
         for (k, &pick) in picks.iter().enumerate() {
             let (pick, points, lane) = (Pick(pick), &mut points[k / LANES % (CHUNK / LANES)], k % LANES);
             let (normal, centre) = (normals[pick.index()], centres[pick.index()]);
-            // For the visible side.
+            // The sign of the visible side's normal.
             let side = if pick.side() == 0 { 1.0 } else { -1.0 };
             points[0][lane] = normal.x * side;
             points[1][lane] = normal.y * side;
@@ -280,7 +280,7 @@ mod tests {
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(500))]
-        /// Every picked face has the same shade as alone, in suns or in all light, with one surface or several.
+        /// Every picked face gets the shade that it gets alone, in suns or in all light, with one surface or several.
         #[test]
         fn picked_faces_are_lit_as_each_is_alone(
             points in prop::collection::vec((vector(), vector(), any::<bool>()), 1..40),

@@ -11,8 +11,8 @@ pub(super) struct Geometry<'a> {
     pub(super) vertex_surfaces: &'a [u16],
     pub(super) triangles: &'a [[u32; 3]],
     pub(super) triangle_surfaces: &'a [u16],
-    /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if
-    /// there are none. As a back face it is culled even where others show their backs: the other
-    /// one has the same depth, and faces the eye.
+    /// A bit for each triangle, set if it lies back to back with another, 64 in a word; empty if there are none. Such a
+    /// triangle is culled as a back face even where others show their backs: its twin has the same depth, and faces the
+    /// eye.
     pub(super) twins: &'a [u64],
 }

@@ -66,19 +66,19 @@ impl DeferredFace {
         (self.object, self.look, self.flat.is_some()) == (other.object, other.look, other.flat.is_some())
     }
 
-    /// It alone.
+    /// The pick of this face alone.
     fn picks(&self) -> Picks<'_> {
         Picks { picks: slice::from_ref(&self.pick), flat: self.flat.as_slice() }
     }
 
-    /// The triangles that include it.
+    /// The triangles that this face is one of.
     fn triangles<'a>(&self, scene: &'a Scene, cache: &'a Cache, added: Triangles<'a>) -> Triangles<'a> {
         let object = self.object as usize;
         if self.look.added { added } else { cache.states[object].triangles(&scene.objects()[object]) }
     }
 }
 
-/// Draws faces: their pipelines, the raster, and the memory of the stages.
+/// Draws faces, with their pipelines, the raster, and the memory of the stages.
 struct Painter<'a, 'b> {
     pipelines: Pipelines<'a>,
     raster: &'a mut Raster<'b>,
@@ -200,7 +200,7 @@ pub(super) fn each_run(
     counts.clear();
     counts.resize(scene.objects().len(), Shares::default());
     pick.added.clear();
-    // Even if no face needs it yet, so that no later frame allocates memory.
+    // Done even if no face needs it yet, so that no later frame allocates memory.
     pick.added.make_room();
     for &object in &cache.plan.order {
         let (of_scene, plan) = (&scene.objects()[object], &cache.plan.objects[object]);
@@ -220,7 +220,7 @@ pub(super) fn each_run(
     }
 }
 
-/// Draws all faces at once, each pixel once.
+/// Draws all faces at once, writing each pixel once.
 fn scan_line(
     (scene, cache, added): (&Scene, &Cache, Triangles<'_>),
     faces: &[DeferredFace],

@@ -35,7 +35,7 @@ struct Converted {
     up_axis: UpAxis,
     positions: Vec<Vector>,
     normals: Vec<Vector>,
-    /// Its coordinates are in units of 2^exponent of the object's.
+    /// Its coordinates, times 2^exponent, are in the object's units.
     exponent: i32,
     /// Bound on the vertices' distance from the pivot, in 1/65,536 of the mesh's own unit.
     radius: u64,
@@ -96,7 +96,7 @@ fn fixed(x: f64) -> Option<I16F16> {
     I16F16::round_from_f64(x)
 }
 
-/// A direction of any length, as 30 bits.
+/// A direction of any length, scaled to 30 bits.
 fn direction(v: [f64; 3]) -> Vector {
     let greatest = v.iter().fold(0.0_f64, |greatest, c| greatest.max(libm::fabs(*c)));
     v.map(|c| if greatest > 0.0 { fixed(c / greatest * 16_384.0).unwrap_or_default() } else { I16F16::default() })
@@ -144,7 +144,7 @@ pub(super) struct IntegerScratch {
 }
 
 impl IntegerPath {
-    /// Converts a scene with finite numbers. A scene that passes can be drawn.
+    /// Converts a scene with finite numbers. If this succeeds, the scene can be drawn.
     pub(super) fn prepare(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
         self.suns.clear();
         // Lamps, including spot lights, are left out, as the plan reports.
@@ -242,7 +242,7 @@ impl IntegerPath {
         Some(Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] })
     }
 
-    /// Passes the triangles of an object of the prepared scene to `triangle`.
+    /// Calls `triangle` for each triangle of an object of the prepared scene.
     pub(super) fn triangles(
         &self,
         shading: Shading,

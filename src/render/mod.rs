@@ -152,23 +152,23 @@ impl Renderer {
     }
 
     /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to a palette entry; with `None`,
-    /// the default, they are mixed. For measuring shades.
+    /// the default, they are mixed. This is for measuring shades.
     pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
         self.cache.tables.only_channel = channel;
         // The machine holds another image.
         self.last = None;
     }
 
-    /// The latest plan: of the last frame drawn, or by [`make_plan`](Self::make_plan).
+    /// The latest plan: that of the last frame drawn, or the one from [`make_plan`](Self::make_plan).
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.cache.plan
     }
 
-    /// The plan of the last frame drawn, as text: [`Plan::rows`] of `scene`, which it must have been drawn from, and
-    /// how far the image may be off where neither per-pixel lighting nor splitting is on. That is computed here, face
-    /// by face, and only here. For an object drawn within an error budget, it says how many of its triangles got each
-    /// shading.
+    /// The plan of the last frame drawn, as text: [`Plan::rows`] of `scene`, which must be the scene that was drawn.
+    /// Where neither per-pixel lighting nor splitting is on, it also says how far the image may be off; this is
+    /// computed face by face, and only in this call. For an object drawn within an error budget, it says how many of
+    /// its triangles got each shading.
     #[must_use]
     pub fn rows(&self, scene: &Scene) -> Vec<plan::Row> {
         self.cache.plan.rows_with(scene, |object| Findings {
@@ -232,9 +232,8 @@ impl Renderer {
     /// If nothing has changed since this renderer's last frame, and nobody has modified the machine's memory, that
     /// frame is left as it is.
     ///
-    /// # Errors
-    /// A number in the scene is not finite or is out of range, or on the integer path does not fit
-    /// 16.16 together with the others. The machine is then left unchanged.
+    /// A number in the scene is not finite or is out of range, or, on the integer path, does not fit in 16.16 together
+    /// with the others. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
@@ -262,8 +261,8 @@ impl Renderer {
 
     /// Draws `scene` into any frame, or into a band of one, with this ratio of pixel width to height.
     ///
-    /// No palette is loaded, as the frame has none. [`Scene::load_palette`] loads the one of the moment into a machine,
-    /// whose [`palette`](Vga::palette) gives its colours, animated or not.
+    /// No palette is loaded, since a frame has none. [`Scene::load_palette`] loads the scene's current one, animated or
+    /// not, into a machine, whose [`palette`](Vga::palette) has the colours.
     ///
     /// # Errors
     /// See [`draw`](Self::draw). On error the frame is left unchanged.
@@ -277,7 +276,8 @@ impl Renderer {
     }
 
     /// Draws `scene` over the contents of the frame, such as a sky or stars: like [`draw_frame`](Self::draw_frame), but
-    /// without clearing. Glass and fog mix with the entries there, as if they were the background. No palette is loaded.
+    /// without clearing. Glass and fog mix with the entries there, as if they were the background. No palette is
+    /// loaded.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -321,8 +321,8 @@ impl Renderer {
         Ok(stats)
     }
 
-    /// Passes every triangle to be drawn to `triangle`, as the raster would get it: object by object, far to near if
-    /// the scene requires it, each in the order of its faces; a forced painter's order does not sort them here.
+    /// Calls `triangle` for every triangle to be drawn, as the raster would receive it: object by object, far to near
+    /// if the scene requires it, each in the order of its faces; a forced painter's order does not sort them here.
     /// Attributes for effects are left out. Returns the counts of the work, without the raster's.
     ///
     /// # Errors

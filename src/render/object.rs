@@ -184,7 +184,7 @@ pub(super) struct ObjectState {
     pub(super) materials: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
-    /// The index of each of the mesh's vertices' points, for tessellation.
+    /// For each vertex of the mesh, the index of its point, for tessellation.
     points: Option<Vec<u32>>,
     tessellated: Tessellated,
     /// True if the tessellated mesh is drawn. Otherwise it is cached for later.
@@ -193,7 +193,8 @@ pub(super) struct ObjectState {
 }
 
 impl ObjectState {
-    /// Updates to the object's current state and settings. Returns how it has changed since its vertices were computed.
+    /// Brings the state up to date with the object and the settings. Returns how the object has changed since its
+    /// vertices were computed.
     pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> Change {
         let (mesh, parameters) = (object.shared_mesh(), Parameters::new(scene, view, settings));
         let source = self.source.get_or_insert_with(|| VertexInputs {
@@ -364,7 +365,7 @@ impl Outputs {
         }
     }
 
-    /// Clears the texture coordinates, unless those of the last frame are still right.
+    /// Clears the texture coordinates, unless those of the last frame are still valid.
     fn forget_texels(&mut self, inputs: &Inputs<'_>) {
         let stages = inputs.plan.stages();
         let stay = stages.vertices != VertexStage::MakeAnew
@@ -386,7 +387,7 @@ impl Outputs {
     fn light_vertices(&mut self, inputs: &Inputs<'_>, stats: &mut Stats) {
         let Inputs { geometry, lights, materials, plan, kernel, .. } = inputs;
         let (columns, stages) = (&mut self.columns, plan.stages());
-        // Nobody sees the back of a closed object.
+        // The back of a closed object is never visible.
         let sides = (!stages.culls(), *kernel);
         if stages.lighting != Lighting::None && stages.lit_at == LitAt::Vertices {
             stats.lit += geometry.positions.len() as u64;
@@ -437,7 +438,7 @@ impl Outputs {
         }
     }
 
-    /// Prepares a budget's decisions on faces, if there is one.
+    /// Prepares a budget's per-face decisions, if there is one.
     fn bound_errors(&mut self, inputs: &Inputs<'_>) {
         let Some(max_error) = inputs.plan.max_error() else { return };
         let is_known = self.of_mesh.has_clusters && inputs.is_mesh;

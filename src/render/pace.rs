@@ -146,8 +146,8 @@ impl Pace {
         cost.is_infinite() || cost <= TOLERANCE * self.max_time
     }
 
-    /// Reports the time and the counts of the last frame: a frame that was [not redrawn](Stats::redrawn) says nothing
-    /// about times.
+    /// Reports the time and the counts of the last frame. The time of a frame that was [not redrawn](Stats::redrawn) is
+    /// ignored.
     pub fn report(&mut self, stats: &Stats, time: Duration) {
         self.took(stats.redrawn.then_some(time.as_secs_f32() * 1000.0));
     }

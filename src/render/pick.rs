@@ -28,7 +28,8 @@ const _: () = assert!(Mesh::MAX_COUNT <= Pick::MAX_COUNT, "a face's index has it
 /// Number of pending picks above which they are drawn.
 const CAPACITY: usize = 512;
 
-/// Room for picks: at capacity, 64 more faces may follow, the last of which has eight parts.
+/// Room for picks: at full capacity, the faces of one more chunk may follow, and the last of these may have eight
+/// parts.
 const ROOM: usize = CAPACITY + CHUNK + AddedTriangles::MAX_OF_FACE;
 
 /// Properties shared by faces that are drawn together.
@@ -42,14 +43,14 @@ pub(super) struct Look {
     pub(super) transparent: bool,
     /// True if each face has one shade for all of its pixels.
     pub(super) one_shade: bool,
-    /// True if the triangles are added by the frame, rather than the object's.
+    /// True if the triangles are added by the frame, rather than those of the object.
     pub(super) added: bool,
 }
 
 impl Look {
     /// The interpolation of the corners' shades.
     pub(super) fn interpolation(&self) -> Interpolation {
-        // With equal corners any will do.
+        // If the corners have the same shade, any interpolation will do.
         if self.one_shade { Interpolation::Gouraud } else { self.shading.interpolation() }
     }
 }
@@ -128,7 +129,7 @@ impl<'a> Picker<'a> {
 
     /// Culls up to 64 triangles. `exact_cover` is false if those that cover no pixel centre may draw something.
     fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
-        // No pixel is covered.
+        // A rectangle that covers no pixel.
         const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
         let masks = cull(self.kernel.simd_level(), at, triangles, self.clip.unwrap_or(NOWHERE), culls);
         if self.clip.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
@@ -176,7 +177,8 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds a triangle whose vertices are not a mesh's. All have one shading, until they are finished.
+    /// Adds a triangle whose vertices are not a mesh's. Until `finish_vertices`, all such triangles have the same
+    /// shading.
     pub(super) fn push_vertices(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation, shading: Shading) {
         let added = &mut self.scratch.added;
         let corners = three(vertices.each_ref(), |vertex| match interpolation {
@@ -237,7 +239,7 @@ impl Faces<'_> {
         if self.stages.lights_faces() {
             picker.scratch.flat.reserve(ROOM);
         }
-        // Every shading that a budget chooses has exact coverage, and so has a single shade.
+        // Every shading that a budget chooses has exact coverage, and so does a single shade.
         let has_one_shade = self.has_one_shade();
         let exact_cover = budget.is_some() || has_one_shade || self.shading.interpolation().has_exact_cover();
         let common = if budget.is_some() { LINEAR } else { self.shading.into() };
@@ -373,7 +375,7 @@ impl Faces<'_> {
         }
     }
 
-    /// [`light_pending`](Self::light_pending), many at a time, so that few lanes are idle.
+    /// The work of [`light_pending`](Self::light_pending): lights many faces at a time, so that few lanes are idle.
     #[inline(never)]
     fn light_faces(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
         let PickScratch { picks, flat, .. } = &mut *picker.scratch;
@@ -418,8 +420,8 @@ impl Faces<'_> {
         shading
     }
 
-    /// Picks a face that reaches beyond the near plane or the guard band, unless all of it is off the screen. Separate,
-    /// as it is rare.
+    /// Picks a face that reaches beyond the near plane or the guard band, unless all of it is off the screen. This is a
+    /// separate function because it is rarely called.
     #[cold]
     #[inline(never)]
     fn clipped(

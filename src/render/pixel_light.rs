@@ -10,7 +10,7 @@ use crate::span::Kernel;
 
 /// One surface of an object, lit pixel by pixel in object space.
 ///
-/// Where the normals of two ends cancel, none is left, and only ambient light remains.
+/// Where the normals at two ends cancel, no normal is left between them, and only ambient light remains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PixelLight<'a> {
     pub(super) lights: Lights<'a>,
@@ -41,7 +41,7 @@ impl PixelLighting for PixelLight<'_> {
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3] {
         let [red, green, blue] =
             self.lights.front_of_three_channels::<false>(&self.material.reflectance, points, self.kernel);
-        // Not by a closure, which would not be inlined.
+        // Without a closure, which would not be inlined.
         [self.shown(Ramp::WHOLE, &red), self.shown(Ramp::WHOLE, &green), self.shown(Ramp::WHOLE, &blue)]
     }
 }

@@ -15,13 +15,13 @@ use crate::span::Kernel;
 pub struct Stats {
     /// The shading; with an error budget, the default one.
     pub shading: Shading,
-    /// Accepted error in shades.
+    /// The accepted error in shades, if there is an error budget.
     pub max_error: Option<f32>,
     /// The path from mesh to vertices.
     pub vertex_path: VertexPath,
     /// The name of the span kernel that drew.
     pub kernel: &'static str,
-    /// Method for hidden surfaces.
+    /// The hidden-surface method.
     pub hidden_surfaces: HiddenSurfaces,
     /// True if anything was drawn: if nothing changed, the last frame is left as it is.
     pub redrawn: bool,
@@ -31,7 +31,7 @@ pub struct Stats {
     pub decided: u64,
     /// Vertices transformed.
     pub vertices: u64,
-    /// Vertices lit; for flat shading faces, except those already found to cover no pixel.
+    /// Vertices lit; with flat shading, faces, except those already found to cover no pixel.
     pub lit: u64,
     /// Faces of all objects.
     pub faces: u64,
@@ -41,7 +41,7 @@ pub struct Stats {
     pub culled: u64,
     /// Triangles passed to the raster: faces, and the parts of clipped ones.
     pub drawn: u64,
-    /// Shares of the shadings.
+    /// The number of triangles by shading.
     pub shares: Shares,
     /// Counts of the raster.
     pub raster: DrawStats,
@@ -57,7 +57,7 @@ impl Shares {
         self.0[shading.index()] += triangles;
     }
 
-    /// Counts those of `drawn` that have not been counted.
+    /// Counts the rest of the `drawn` triangles, those that have not been counted yet.
     pub(super) fn complete(&mut self, shading: FaceShading, drawn: u64) {
         self.add(shading, drawn - self.0.iter().sum::<u64>());
     }

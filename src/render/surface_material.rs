@@ -70,7 +70,7 @@ impl SurfaceMaterial {
         U8F8::from_intensity(intensity as f32, self.ramp.first(), self.ramp.entries())
     }
 
-    /// The shades of eight intensities on a ramp, which the compiler may know.
+    /// The shades of eight intensities on a ramp, which may be known at compile time.
     #[inline(always)]
     pub(super) fn shade_of_eight(ramp: Ramp, intensities: &[f64; 8]) -> [U8F8; 8] {
         U8F8::from_eight_intensities(&each!(lane => intensities[lane] as f32), ramp.first(), ramp.entries())

@@ -1,6 +1,5 @@
-//! The lookup tables of effects. Each is computed when first needed, and again when the palette or
-//! another of its inputs has changed. Those of an image that nobody holds any more are dropped when
-//! another image needs a table.
+//! The lookup tables of effects. Each is computed when first needed, and again when the palette or another of its
+//! inputs has changed. Tables of an image that is no longer in use are dropped when another image needs a table.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -99,7 +98,8 @@ impl Tables {
         find(&self.mipmaps, image).map(Mipmap::levels)
     }
 
-    /// Computes the tables of an image, and its smaller copies if it has them; for `None`, a table that changes nothing.
+    /// Computes the tables of an image, and its smaller copies if it has them; for `None`, a table that changes
+    /// nothing.
     pub(super) fn ensure_shades(&mut self, image: Option<Image<'_>>, in_channels: bool) {
         let Some(image) = image else {
             self.neutral_shades.get_or_insert_with(|| Lut64K::from_fn(|shade, _| shade));

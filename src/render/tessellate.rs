@@ -50,8 +50,8 @@ pub(super) struct Tessellated {
     straight: Vec<bool>,
     /// Intensities of front and back at the vertices, computed once for each.
     light: Vec<(f64, f64)>,
-    /// At each vertex, the angle between the eye and the mirrored light for each sun and each lamp, if any surface has a
-    /// highlight.
+    /// At each vertex, the angle between the eye and the mirrored light for each sun and each lamp, if any surface has
+    /// a highlight.
     angles: Vec<f64>,
     /// The edges to be split, by their points, with the index of the new point.
     halved: EdgeMap,
@@ -200,7 +200,7 @@ impl Tessellated {
 
     fn add_middle(&mut self, a: u32, b: u32, point: u32) -> u32 {
         let (a, b) = (a as usize, b as usize);
-        // Half of each, as their sum might overflow. The result is the same from both ends.
+        // Half of each, since their sum might overflow. The order of the two ends does not matter.
         self.positions.push(self.positions[a] * 0.5 + self.positions[b] * 0.5);
         let sum = self.normals[a] + self.normals[b];
         self.normals.push(unit(sum).unwrap_or(self.normals[a]));

@@ -28,7 +28,7 @@ pub enum PaletteAnimation {
 }
 
 impl PaletteAnimation {
-    /// Loads the DAC with the state of `palette` at a time.
+    /// Loads the DAC with the colours that `palette` has at this time.
     pub(crate) fn load(&self, palette: &Palette, seconds: f64, vga: &mut Vga) {
         match self {
             Self::Fade { to, period } => {

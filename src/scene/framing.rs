@@ -30,7 +30,7 @@ const FILL: f64 = 0.9;
 const ASPECT: f64 = 4.0 / 3.0;
 /// The least distance of the eye from the nearest point, as a fraction of the total depth.
 const CLEARANCE: f64 = 1.0 / 64.0;
-/// The most iterations until the picture is centred. Convergence is quadratic; two or three suffice.
+/// The max number of iterations for centring the picture. Convergence is quadratic; two or three suffice.
 const ROUNDS: usize = 8;
 
 type Row = [f64; 3];
@@ -70,8 +70,7 @@ enum Shape {
 }
 
 impl Swept {
-    /// The space that `object` sweeps while it turns in this way, and moves along `path` if there
-    /// is one.
+    /// The space that `object` sweeps as it turns in this way and, if there is a `path`, moves along it.
     pub fn new(object: &Object, turning: Turning, path: Option<&Path>) -> Self {
         let shape = match turning {
             Turning::Still => Shape::Points(points(object, object.angles)),
@@ -96,7 +95,7 @@ impl Swept {
         Self { path, shape }
     }
 
-    /// The extreme point in each direction.
+    /// The extreme point in each of these directions.
     fn farthest<const N: usize>(&self, directions: &[Row; N]) -> [Row; N] {
         let offsets: [Row; N] = match &self.shape {
             Shape::Points(points) => best(points, |point, i| dot(*point, directions[i])),
@@ -228,7 +227,7 @@ fn farthest<const N: usize>(everything: &[Swept], directions: &[Row; N]) -> Opti
     })
 }
 
-/// The entry of a non-empty list with the greatest of each of N values; the first if several are equal.
+/// For each of N values, the entry of a non-empty list where the value is greatest; the first if several are equal.
 fn best<T: Copy, const N: usize>(list: &[T], value: impl Fn(&T, usize) -> f64) -> [T; N] {
     let mut best = [(list[0], f64::NEG_INFINITY); N];
     for entry in list {
@@ -472,8 +471,8 @@ mod tests {
         assert_eq!(plain, with_more);
     }
 
-    /// Points, lines seen end on, the least and the greatest sizes: the camera has a direction, and the mesh is beyond
-    /// its near plane.
+    /// Points, lines seen end on, and the smallest and largest sizes: the camera always has a direction, and the mesh
+    /// is beyond its near plane.
     #[test]
     fn what_has_no_size_or_too_much_has_a_legal_camera() {
         let [point, far] = [Vec3::splat(7.0), Vec3::splat(f32::MAX)];
@@ -502,7 +501,8 @@ mod tests {
         }
     }
 
-    /// A still object is framed by its points from any side, one that turns freely by its sphere; along paths, too.
+    /// A still object is framed by its points, and one that turns freely by its sphere, from any side and along any
+    /// path.
     #[test]
     fn everything_is_in_the_picture_wherever_it_moves() {
         let mut random = Random::again(2);

@@ -62,8 +62,8 @@ pub struct Scene {
     /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
     /// no ramps, materials that name one are drawn with the nearest entries, dithered.
     ///
-    /// With textures, fog or transparency a new palette costs milliseconds, since their tables are computed again. Fade
-    /// by [`palette_animation`](Self::palette_animation), or by [`Vga::fade`](crate::vga::Vga::fade) after drawing.
+    /// With textures, fog or transparency a new palette costs milliseconds, since their tables are recomputed. Fade by
+    /// [`palette_animation`](Self::palette_animation), or by [`Vga::fade`](crate::vga::Vga::fade) after drawing.
     pub palette: Option<Palette>,
     /// The change of the palette over time.
     pub palette_animation: Option<PaletteAnimation>,
@@ -96,8 +96,8 @@ impl Scene {
     /// The angle by which the top of a [shown](Self::showing) object is tilted towards the eye.
     pub const TILT: Angle = Angle::from_radians(0.35);
 
-    /// Makes an empty scene: ambient light of intensity 1 and no other, a grey palette, entry 0 as background, a loop of
-    /// four seconds, and a camera that looks along −z at the unit sphere around the origin.
+    /// Makes an empty scene: ambient light of intensity 1 and no other, a grey palette, entry 0 as background, a loop
+    /// of four seconds, and a camera that looks along −z at the unit sphere around the origin.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -131,8 +131,8 @@ impl Scene {
         scene
     }
 
-    /// Adds a mesh, or an object with its own materials and up axis, and shows it: centred, filling the picture, turning
-    /// about its centre, lit by one sun from the upper right behind the eye.
+    /// Adds a mesh, or an object with its own materials and up axis, and shows it: centred, filling the picture,
+    /// turning about its centre, lit by one sun from the upper right behind the eye.
     ///
     /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once per
     /// [loop](Self::duration), driven by [`set_time`](Self::set_time). Over the whole turn it fills nine tenths of the
@@ -151,8 +151,8 @@ impl Scene {
         self.show_turned(object.into(), |_| [Self::TILT, Angle::default()])
     }
 
-    /// [Shows](Self::show) an object with other initial angles about x and y. `angles` is called with the object once it
-    /// is centred.
+    /// [Shows](Self::show) an object with other initial angles about x and y. `angles` is called with the object once
+    /// it is centred.
     pub fn show_turned(&mut self, object: Object, angles: impl FnOnce(&Object) -> [Angle; 2]) -> ObjectId {
         let mut object = object.centred();
         object.position = Vec3::ZERO;
@@ -200,7 +200,7 @@ impl Scene {
     }
 
     /// Removes an object and returns it; `None` if it was removed before. The objects after it move down by one index.
-    /// Motions that name it have no effect, and its children are placed by their own positions alone.
+    /// Motions that name it have no effect, and its children are placed as if they had no parent.
     ///
     /// ```
     /// use mode13h::mesh::shapes;
@@ -357,7 +357,7 @@ impl Default for Scene {
     }
 }
 
-/// Panics with the location of the caller who indexed the scene.
+/// Panics with the location of the code that indexed the scene.
 #[cold]
 #[track_caller]
 fn not_there(what: &str) -> ! {
@@ -399,8 +399,8 @@ impl IndexMut<LightId> for Scene {
 
 impl IndexMut<ObjectId> for Scene {
     /// # Panics
-    /// If the object was removed. An id from another scene may name any object, or none. [`get_mut`](Scene::get_mut) does not
-    /// panic.
+    /// If the object was removed. An id from another scene may name any object, or none. [`get_mut`](Scene::get_mut)
+    /// does not panic.
     #[track_caller]
     fn index_mut(&mut self, id: ObjectId) -> &mut Object {
         self.get_mut(id).unwrap_or_else(|| not_there("object"))

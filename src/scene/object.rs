@@ -62,11 +62,11 @@ impl Object {
     /// palette's first ramp, the second its second, and so on, wrapping around.
     ///
     /// A material takes the brightness of its surface's `diffuse`, 15 % of it as ambient light and the rest as diffuse
-    /// light, and not its hue: colours are those of the ramp. To see the hue, set [`Material::color`], or make a palette
+    /// light, but not its hue: colours come from the ramp. To see the hue, set [`Material::color`], or make a palette
     /// with `mode13h_assets::auto_palette`.
     ///
-    /// A mesh with vertices that several surfaces share is copied, with such a vertex once for each. For objects that
-    /// are to share one mesh, call [`Mesh::with_one_surface_a_vertex`] first.
+    /// If surfaces of the mesh share vertices, the mesh is copied, with one copy of such a vertex for each surface. To
+    /// share one mesh between objects nevertheless, call [`Mesh::with_one_surface_a_vertex`] first.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = in_parts(mesh.into());
@@ -135,17 +135,17 @@ impl Object {
         &self.mesh
     }
 
-    /// Replaces the mesh and keeps everything else: the next pose of an animation. If the mesh has more surfaces than
-    /// there are materials, the others get new ones, as by [`new`](Self::new), and shared vertices are split as there.
-    /// The renderer recomputes everything it caches for the object, even if the mesh is equal, so do not call this while
-    /// nothing moves.
+    /// Replaces the mesh and keeps everything else, as for the next pose of an animation. If the mesh has more surfaces
+    /// than there are materials, the others get new ones, as in [`new`](Self::new), and shared vertices are split as
+    /// there. The renderer then recomputes everything it caches for the object, even if the new mesh is equal, so call
+    /// this only when something moves.
     pub fn set_mesh(&mut self, mesh: impl Into<Shared<Mesh>>) {
         self.mesh = in_parts(mesh.into());
         let first = self.materials.len();
         self.materials.extend(materials_of(&self.mesh).skip(first));
     }
 
-    /// The mesh, for callers who store it.
+    /// The mesh, for callers that store it.
     pub(crate) fn shared_mesh(&self) -> &Shared<Mesh> {
         &self.mesh
     }
@@ -226,7 +226,7 @@ impl Object {
         // At y = ±90° (gimbal lock), rotations about x and z coincide: the whole rotation goes to
         // x.
         let z = if cy > 1e-6 { libm::atan2(-at(0, 1), at(0, 0)) } else { 0.0 };
-        // The rotation that takes (sz, cz, 0) to (0, cx, sx): close to a right angle x makes up for the error of z.
+        // The rotation that takes (sz, cz, 0) to (0, cx, sx): even close to gimbal lock, x makes up for the error of z.
         let (sz, cz) = libm::sincos(z);
         let x = libm::atan2(at(2, 0) * sz + at(2, 1) * cz, at(1, 0) * sz + at(1, 1) * cz);
         self.angles = [x, y, z].map(Angle::from_radians);
@@ -278,7 +278,7 @@ impl Placement {
         Self { turn: matrix_product(&above.turn, &self.turn), scale: above.scale * self.scale, position }
     }
 
-    /// The position in the world of a point of the mesh.
+    /// The world position of a point of the mesh.
     fn point(&self, pivot: Vec3, point: [f64; 3]) -> [f64; 3] {
         let pivot = pivot.to_array().map(f64::from);
         let from_pivot: [f64; 3] = core::array::from_fn(|i| point[i] - pivot[i]);
@@ -384,8 +384,8 @@ pub fn turn(angles: [Angle; 3]) -> [[f64; 3]; 3] {
 
 /// The product of two matrices by rows, each sum in the order of its terms.
 ///
-/// (Indexed, because nested array `map`s become calls, which take a twelfth of the time of 500
-/// small objects.)
+/// (Indexed, because nested array `map`s compile to calls, which take a twelfth of the time of drawing 500 small
+/// objects.)
 pub(crate) fn matrix_product(a: &[[f64; 3]; 3], b: &[[f64; 3]; 3]) -> [[f64; 3]; 3] {
     let mut product = [[0.0; 3]; 3];
     for (to, [x, y, z]) in product.iter_mut().zip(a) {

@@ -29,9 +29,9 @@ named! {
         /// Vertices in f32.
         #[default]
         Float = "float",
-        /// Vertices in 16.16, by [`integer`](crate::integer), for processors without floating point; elsewhere it is the
-        /// slower path. The scene's own numbers are floats, so they are converted: a mesh when it is first seen, angles
-        /// to the nearest 1/65,536 of a turn.
+        /// Vertices in 16.16, by [`integer`](crate::integer), for processors without floating point; elsewhere it is
+        /// the slower path. The scene's own numbers are floats, so they are converted: a mesh when it is first seen,
+        /// angles to the nearest 1/65,536 of a turn.
         ///
         /// It draws matt surfaces under suns, flat or by Gouraud shading. Lamps, highlights, colours, textures, fog,
         /// transparency and dither are left out, as the [plan](crate::plan) says.
@@ -179,7 +179,7 @@ impl Settings {
         asks_for_splitting && accuracy.max_error().is_none()
     }
 
-    /// The tolerance, in shades, to which the shades along the edges of split faces are linear.
+    /// The tolerance, in shades, for how far the shades along the edges of split faces may be from linear.
     pub(crate) fn tolerance(&self) -> f32 {
         self.tessellation.unwrap_or(Self::DEFAULT_TESSELLATION)
     }

@@ -60,14 +60,13 @@ impl Shading {
         }
     }
 
-    /// Returns whether its faces cover exactly the pixels whose centres are inside them.
+    /// Returns whether faces drawn with it cover exactly the pixels whose centres are inside them.
     #[must_use]
     pub const fn has_exact_cover(self) -> bool {
         self.interpolation().has_exact_cover()
     }
 
-    /// The shading that the 16.16 vertex path uses for it: itself, or the default if that path
-    /// lacks it.
+    /// The shading that the 16.16 vertex path uses instead of this one: itself, or the default if that path lacks it.
     #[must_use]
     pub const fn in_integers(self) -> Self {
         match self {

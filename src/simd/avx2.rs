@@ -25,7 +25,7 @@ macro_rules! halves {
     }};
 }
 
-/// Masks of 32-bit lanes, widened to those of the 64-bit lanes of both halves.
+/// Widens the masks of 32-bit lanes to masks of the 64-bit lanes of both halves.
 #[inline(always)]
 unsafe fn wide(mask: __m256i) -> F64 {
     // SAFETY: the caller has AVX2.
@@ -125,7 +125,7 @@ impl Lanes8 for Avx2 {
             [_mm256_cvtepi32_pd(_mm256_castsi256_si128(from)), _mm256_cvtepi32_pd(_mm256_extracti128_si256::<1>(from))]
         }
         fn unsigned_to_f64(from: __m256i) -> F64 {
-            // Subtracts 2³¹, and adds it again: both are exact.
+            // Subtracts 2³¹ and adds it again, both of which are exact.
             let signed = _mm256_xor_si256(from, _mm256_set1_epi32(i32::MIN));
             let (low, high) = (_mm256_castsi256_si128(signed), _mm256_extracti128_si256::<1>(signed));
             let more = _mm256_set1_pd(2_147_483_648.0);

@@ -133,8 +133,8 @@ impl Lanes8 for Avx512 {
         [z, dz]: [i64; 2],
         keeps: bool,
     ) -> u32 {
-        // SAFETY: `self` proves that the processor has the instructions. Eight cells are loaded, and at most eight cells and
-        // pixels stored. Neither requires alignment.
+        // SAFETY: `self` proves that the processor has the instructions. Eight cells are loaded, and at most eight
+        // cells and pixels stored. Neither requires alignment.
         unsafe {
             // The lower eight bits.
             let there = _bzhi_u32(0xFF, count.min(8) as u32) as u8;

@@ -1,4 +1,4 @@
-//! Operations on eight lanes of numbers, in which the batches are written once for all levels.
+//! Operations on eight lanes of numbers, with which the batches are written once for all levels.
 //!
 //! A token that implements [`Lanes8`] proves that the processor has its level. Each operation works lane by lane. Lanes
 //! 0 to 7 are in the order of the arrays they are loaded from.
@@ -14,7 +14,7 @@ macro_rules! inlined {
 }
 pub(super) use inlined;
 
-/// [`inlined!`] for the intrinsics of a level, whose token is `self`.
+/// Applies [`inlined!`] to the intrinsics of a level, whose token is `self`.
 #[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
 macro_rules! intrinsics {
     ($(fn $name:ident($($argument:ident: $type:ty),*) $(-> $result:ty)? $body:block)*) => {
@@ -37,7 +37,8 @@ pub(super) use intrinsics;
 /// `compiled_for_each_level!`.
 ///
 /// # Safety invariant
-/// Every implementation computes what is said here: [`SpanList`](crate::span::list::SpanList) admits spans by it.
+/// Every implementation computes what is said here: [`SpanList`](crate::span::list::SpanList) relies on it to admit
+/// spans.
 pub(crate) trait Lanes8: Copy {
     /// Eight f64.
     type F64: Copy;
@@ -49,8 +50,8 @@ pub(crate) trait Lanes8: Copy {
     type Mask: Copy;
 
     /// Calls a part of a function that is better not inlined: because it would be compiled several times, or because it
-    /// is rare and would slow down what is around it. If the closure is `#[inline(always)]`, it is compiled for this level;
-    /// what it captures by reference has to be in memory.
+    /// is rare and would slow down the code around it. If the closure is `#[inline(always)]`, it is compiled for this
+    /// level; what it captures by reference has to be in memory.
     #[inline(always)]
     fn apart<R>(self, part: impl FnOnce() -> R) -> R {
         #[inline(never)]
@@ -81,7 +82,7 @@ pub(crate) trait Lanes8: Copy {
     /// `a` where the mask is set, otherwise `b`.
     fn select(self, mask: Self::Mask, a: Self::F64, b: Self::F64) -> Self::F64;
     fn to_f64(self, from: Self::I32) -> Self::F64;
-    /// Converts the lanes as u32.
+    /// Converts the lanes, read as u32.
     fn unsigned_to_f64(self, from: Self::I32) -> Self::F64;
     /// The lower halves of the bits.
     fn low_bits(self, from: Self::F64) -> Self::I32;
@@ -89,7 +90,7 @@ pub(crate) trait Lanes8: Copy {
 
     fn load_i32(self, from: &[i32; 8]) -> Self::I32;
     fn splat_i32(self, value: i32) -> Self::I32;
-    /// One value in the lower four lanes, the other in the upper four.
+    /// `low` in lanes 0 to 3, `high` in lanes 4 to 7.
     #[inline(always)]
     fn halves_i32(self, [low, high]: [i32; 2]) -> Self::I32 {
         self.load_i32(&[low, low, low, low, high, high, high, high])
@@ -102,8 +103,8 @@ pub(crate) trait Lanes8: Copy {
         self.store_i32(from, &mut lanes);
         crate::lanes::each!(lane => lanes[lane] as u8)
     }
-    /// The lower half of each lane, extracted from a vector and not through memory where the level can: each may be an
-    /// index.
+    /// The lower half of each lane. Where the level can, it is extracted from the vector rather than passed through
+    /// memory, because each may be an index.
     #[inline(always)]
     fn low_words(self, from: Self::I32) -> [u16; 8] {
         let mut lanes = [0; 8];
@@ -125,7 +126,7 @@ pub(crate) trait Lanes8: Copy {
     fn is_greater(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn is_equal(self, a: Self::I32, b: Self::I32) -> Self::Mask;
     fn select_i32(self, mask: Self::Mask, a: Self::I32, b: Self::I32) -> Self::I32;
-    /// Interleaves lanes 0 of both, lanes 1 of both, and so on: the first eight and the last eight.
+    /// Interleaves the lanes: lanes 0 of both, lanes 1 of both, and so on. Returns the first eight and the last eight.
     fn interleave_i32(self, a: Self::I32, b: Self::I32) -> [Self::I32; 2];
 
     fn load_i64(self, from: &[i64; 8]) -> Self::I64;
@@ -141,11 +142,11 @@ pub(crate) trait Lanes8: Copy {
     /// Shifts left by a constant.
     fn shl_i64(self, a: Self::I64, by: i32) -> Self::I64;
     fn to_i64(self, from: Self::I32) -> Self::I64;
-    /// Converts the lanes as u32.
+    /// Converts the lanes, read as u32.
     fn unsigned_to_i64(self, from: Self::I32) -> Self::I64;
     /// The lower and the upper halves.
     fn halves_of_i64(self, from: Self::I64) -> [Self::I32; 2];
-    /// Like [`interleave_i32`](Self::interleave_i32).
+    /// Interleaves like [`interleave_i32`](Self::interleave_i32).
     fn interleave_i64(self, a: Self::I64, b: Self::I64) -> [Self::I64; 2];
 
     /// Reads `from[rows[lane][column]]` for each of three columns.
@@ -181,7 +182,7 @@ pub(crate) trait Lanes8: Copy {
         }
         compress(self.to_bitmask(mask), &lanes, to, i32::cast_unsigned);
     }
-    /// [`compress_i32`](Self::compress_i32) for 64-bit lanes.
+    /// Packs like [`compress_i32`](Self::compress_i32), for 64-bit lanes.
     #[inline(always)]
     fn compress_i64<const N: usize>(self, mask: Self::Mask, from: [Self::I64; N], to: [&mut [i64; 8]; N]) {
         let mut lanes = [[0; 8]; N];
@@ -191,21 +192,20 @@ pub(crate) trait Lanes8: Copy {
         compress(self.to_bitmask(mask), &lanes, to, |lane| lane);
     }
 
-    /// Tests the depths of four pixels, of which only the first `count` are compared with their
-    /// cells. Returns a byte for each, the first lowest: 0 if its depth is greater than the cell,
-    /// otherwise 255. With `keeps` greater depths are stored. `z` and `dz` are the first depth and
-    /// the change per pixel, with the integer part in the upper half.
+    /// Tests the depths of four pixels, of which only the first `count` are compared with their cells. Returns a byte
+    /// for each, the first lowest: 0 if its depth is greater than the cell, otherwise 255. If `keeps`, greater depths
+    /// are stored. `depths` are the first depth and the change per pixel, with the integer part in the upper half.
     #[inline(always)]
     fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
         // The lower half.
         test_depths(cells, depths, count, keeps) as u32
     }
-    /// [`test_four`](Self::test_four) for eight pixels.
+    /// Tests like [`test_four`](Self::test_four), for eight pixels.
     #[inline(always)]
     fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         test_depths(cells, depths, count, keeps)
     }
-    /// [`test_four`](Self::test_four) for up to eight pixels, as few as will do.
+    /// Tests like [`test_four`](Self::test_four), for up to eight pixels: no more of them than necessary.
     #[inline(always)]
     fn test_block(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         match cells.first_chunk_mut() {
@@ -215,8 +215,8 @@ pub(crate) trait Lanes8: Copy {
             _ => self.test_eight(cells, depths, count, keeps),
         }
     }
-    /// Copies the first `count` of eight bytes to those pixels whose depths are greater than their cells; depths are as in
-    /// [`test_four`](Self::test_four). Returns the number of these pixels.
+    /// Copies the first `count` of eight bytes to those pixels whose depths are greater than their cells; depths are as
+    /// in [`test_four`](Self::test_four). Returns the number of these pixels.
     #[inline(always)]
     fn copy_nearer(
         self,
@@ -231,11 +231,11 @@ pub(crate) trait Lanes8: Copy {
     }
 }
 
-/// Copies eight bytes, except where the mask lets pixels stay.
+/// Copies eight bytes, except to the pixels that the mask leaves unchanged.
 #[inline(always)]
 pub(crate) fn copy_block(block: &mut [u8; 8], new: [u8; 8], stays: u64) {
     if stays >> 32 == u64::from(u32::MAX) {
-        // Bytes just stored are then less often reloaded in different pieces.
+        // Four are written at once: bytes just stored are then less often reloaded in different pieces.
         if let (Some(four), Some(new)) = (block.first_chunk_mut(), new.first_chunk()) {
             // The lower half.
             let stay = stays as u32;
@@ -260,7 +260,7 @@ fn compress<T: Copy, U, const N: usize>(bits: u32, from: &[[T; 8]; N], mut to: [
     }
 }
 
-/// Tests depths pixel by pixel, which on most levels is as fast as in vectors.
+/// Tests depths pixel by pixel; on most levels this is as fast as in vectors.
 // Not inlined where size matters, see `fixed::IS_COMPACT`.
 #[cfg_attr(any(mode13h_small, target_family = "wasm"), inline(never))]
 #[cfg_attr(not(any(mode13h_small, target_family = "wasm")), inline(always))]

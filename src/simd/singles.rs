@@ -1,4 +1,4 @@
-//! Eight lanes of f32 besides those of [`Lanes8`], for the vertex stages and light at points.
+//! Eight lanes of f32, in addition to those of [`Lanes8`], for the vertex stages and light at points.
 
 use glam::Vec3;
 
@@ -13,7 +13,7 @@ pub(crate) trait F32Lanes8: Lanes8 {
     type F32: Copy;
 
     fn splat_f32(self, value: f32) -> Self::F32;
-    /// One value in the lower four lanes, the other in the upper four.
+    /// `low` in lanes 0 to 3, `high` in lanes 4 to 7.
     #[inline(always)]
     fn halves_f32(self, [low, high]: [f32; 2]) -> Self::F32 {
         self.load_f32(&[low, low, low, low, high, high, high, high])
@@ -98,7 +98,8 @@ impl F32Lanes8 for Portable {
 }
 
 /// x, y and z of four vectors, from three vectors of four numbers that hold them in order. `$shuffle::<N>(a, b)` takes
-/// two numbers from each, by two bits of `N` for each number, the lowest first; wider vectors do so in each 128 bits.
+/// two numbers from each of its operands, selected by two bits of `N` for each number, the lowest first; wider vectors
+/// are shuffled in each 128 bits.
 #[cfg(simd_x86_64)]
 macro_rules! apart {
     ($shuffle:ident, $a:expr, $b:expr, $c:expr) => {{

@@ -261,7 +261,7 @@ fn check_singles<S: F32Lanes8>(s: S, name: &'static str) {
         c.f32s("sub_f32", s.sub_f32(fa, fb), p.sub_f32(a, b));
         c.f32s("mul_f32", s.mul_f32(fa, fb), p.mul_f32(a, b));
         c.f32s("div_f32", s.div_f32(fa, fb), p.div_f32(a, b));
-        // A sum that is exact, however often it is rounded.
+        // A sum that is exact, whether it is rounded once or several times.
         let bytes = random.i32s().map(|n| (n >> 24) as f32);
         let all = s.load_f32(&bytes);
         c.f32s("mul_add_f32", s.mul_add_f32(all, all, all), p.mul_add_f32(bytes, bytes, bytes));

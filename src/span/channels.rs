@@ -21,16 +21,16 @@ const LEVELS: [u8; 6] = {
     levels
 };
 
-/// Position of a channel value among the levels.
+/// The position of a channel value among the levels.
 #[derive(Clone, Copy)]
 struct Between {
     /// The index of the highest level that is not above the value.
     level: u8,
-    /// Threshold below which it takes the next level; 0 if it is a level itself.
+    /// The threshold below which the value takes the next level; 0 if it is a level itself.
     next_below: u8,
 }
 
-/// Every channel value between its levels.
+/// The position of every channel value among the levels.
 static BETWEEN: [Between; 256] = {
     let mut table = [Between { level: 0, next_below: 0 }; 256];
     let (mut value, mut level) = (0, 0);
@@ -142,8 +142,9 @@ mod blocks {
 /// row[k] = map[(r' >> 3) << 10 | (g' >> 3) << 5 | b' >> 3]
 /// ```
 ///
-/// `map` holds an entry for every colour of 5 bits per channel, red on top. `spread` is how far the thresholds move a
-/// value, from the lowest to the highest: about the distance of neighbouring colours in the palette; 0 is no dither.
+/// `map` holds an entry for every colour of 5 bits per channel, with red in the highest bits. `spread` is how far the
+/// thresholds move a value, from the lowest to the highest: about the distance between neighbouring colours of the
+/// palette. 0 means no dither.
 #[cfg(any(test, feature = "internals"))]
 #[expect(clippy::too_many_arguments, reason = "three rows in, one out, and what the pixels share")]
 pub fn mix_nearest(
@@ -167,7 +168,7 @@ pub fn mix_nearest(
     }
 }
 
-/// Mixes three channels into any palette at eight pixels, as `mix_nearest` does one by one.
+/// Mixes three channels into any palette at eight pixels, with the results of `mix_nearest`.
 #[cfg(feature = "alloc")]
 #[inline(always)]
 pub(crate) fn mix_nearest_eight<S: Lanes8>(

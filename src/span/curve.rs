@@ -10,12 +10,12 @@ compiled_for_each_level! {
     /// shades[k] = nearest(min(max(a + k·(b + k·c), least), most))
     /// ```
     ///
-    /// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k is
-    /// at most 4,095.
+    /// in f32, with products and sums each rounded once and in this order; ties go to even, and NaN becomes `least`. k
+    /// is at most 4,095.
     ///
-    /// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast
-    /// Phong shading*, 1986, use two additions per pixel for it; here every pixel is computed from its
-    /// own k, so it is as accurate as the first.)
+    /// A quadratic function over a triangle has this form along a row. (G. Bishop and D. Weimer, *Fast Phong shading*,
+    /// 1986, use two additions per pixel for it; here every pixel is computed from its own k, so each is as accurate as
+    /// the first.)
     #[inline]
     pub fn curve[][](kernel: Kernel, shades: &mut [u16], parabola: [f32; 3], least: u16, most: u16) {
         curve_inlined(shades, parabola, least, most)
@@ -24,7 +24,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn curve_inlined(shades: &mut [u16], [a, b, c]: [f32; 3], least: u16, most: u16) {
-    // With 2²³ added the last bit of an f32 is worth 1, so the sum is rounded to the nearest integer.
+    // When 2²³ is added, the last bit of an f32 is worth 1, so the sum is rounded to the nearest integer.
     const WHOLE: f32 = 8_388_608.0;
     let (least, most) = (f32::from(least), f32::from(most));
     // An index loop, as in `light::lanes`.

@@ -43,7 +43,7 @@ impl Cells<'_> {
     }
 }
 
-/// Cell of a depth buffer, one for each pixel: greater is nearer, 0 is empty.
+/// A cell of a depth buffer, one for each pixel: greater is nearer, 0 is empty.
 ///
 /// | cell | holds | what is lost |
 /// |---|---|---|
@@ -53,7 +53,7 @@ impl Cells<'_> {
 /// In the engine d is at most 2³⁰, so a u16 holds the upper 16 of its 30 bits. They are rounded up, so whatever is
 /// drawn with u32 cells (d ≥ 1) hides the background here too, however far away it is. At a distance w two surfaces,
 /// one in front of the other, are distinguished if they are w² / (2¹⁶·near) apart: at 100 times the near distance that
-/// is 0.15 of the near distance. The two nearest values coincide; one of them would be for d = 2³⁰ alone.
+/// is 0.15 of the near distance. The two nearest values coincide, because one of them would be for d = 2³⁰ alone.
 pub trait Cell: Copy + Ord + Default + sealed::Sealed + 'static {
     /// The cell's value for a depth.
     fn of_depth(depth: u32) -> Self;
@@ -88,7 +88,7 @@ pub fn fill_nearer<D: Cell>(row: &mut [u8], depth: &mut [D], shade: u16, step: u
     })
 }
 
-/// [`fill_nearer`] of shades in 16.16.
+/// [`fill_nearer`] for shades in 16.16.
 #[inline]
 pub(crate) fn fill_nearer_16_16<D: Cell>(
     row: &mut [u8],

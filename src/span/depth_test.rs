@@ -14,8 +14,8 @@ pub(crate) type Masks = [u64; 64 / LANES];
 /// Half of eight pixels.
 const FOUR: usize = LANES / 2;
 
-/// Tests a span of this length, and stores a mask for each block. Depths have the integer part in the upper half; with
-/// `keeps` nearer ones are stored in the cells. Returns the number of nearer pixels.
+/// Tests a span of this length, and stores a mask for each block. Depths have the integer part in the upper half. If
+/// `keeps`, nearer depths are stored in the cells. Returns the number of nearer pixels.
 #[inline(always)]
 pub(crate) fn test_span<S: Lanes8>(
     s: S,
@@ -68,7 +68,7 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
     let (mut row, mut bytes) = (row, bytes);
     for &stays in masks {
         if row.len().min(bytes.len()) < LANES {
-            // At the end of one of them.
+            // At the end of the row or of the bytes.
             for ((pixel, byte), stay) in row.iter_mut().zip(bytes).zip(stays.to_le_bytes()) {
                 *pixel = if stay == 0 { *byte } else { *pixel };
             }
@@ -81,9 +81,8 @@ fn copy_masked(row: &mut [u8], bytes: &[u8], masks: &[u64]) {
     }
 }
 
-/// Copies the bytes of a span of up to 64 pixels where they are nearer, with depths as in
-/// [`test_span`]; the row and the cells have that many, or none. Returns the number of nearer
-/// pixels.
+/// Copies the bytes of a span of up to 64 pixels where they are nearer, with depths as in [`test_span`]. The row and
+/// the cells have that many pixels, or none at all. Returns the number of nearer pixels.
 #[inline(always)]
 pub(crate) fn copy_span<S: Lanes8>(
     s: S,

@@ -4,7 +4,7 @@
 //! row[k] = ((shade + k·step + thresholds.at(x + k)) mod 65,536) >> 8
 //! ```
 //!
-//! Rounding to nearest adds a half (128); dither adds 0 to 255, depending on the pixel's position, so that the share of
+//! Rounding to nearest adds a half (128); dither adds 0 to 255, depending on the pixel's position. So the share of
 //! pixels that take the upper of two bytes is the shade's fraction.
 
 pub use super::thresholds::{DitherPattern, PERIOD, ThresholdRow, Thresholds};

@@ -50,7 +50,8 @@ pub fn fill_float(row: &mut [u8], first: i32, n: [f32; 2], d: [f32; 2], range: [
     }
 }
 
-/// [`fill_float`] in whole blocks of eight, for which `row` has room, so that bytes after the first `length` are arbitrary.
+/// Fills as [`fill_float`] does, but in whole blocks of eight, for which `row` has room: bytes after the first `length`
+/// are arbitrary.
 #[inline(always)]
 pub(crate) fn fill_float_blocks(
     (row, length): (&mut [u8], usize),

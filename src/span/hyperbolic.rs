@@ -27,10 +27,9 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
 
 /// Fills `row` with quotients in f64, for rows in which these nearly always decide.
 ///
-/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of
-/// less than ½: a product and a sum each in numerator and denominator, and a quotient. Rounded to
-/// an integer it is less than 1 off, so its upper 8 bits are the byte unless the lower 16 are 0;
-/// there `exact` gives it.
+/// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of less than ½: a
+/// product and a sum each in numerator and denominator, and a quotient. Rounded to an integer it is less than 1 off, so
+/// its upper 8 bits are the byte unless the lower 16 are 0; in that case `exact` returns the byte.
 #[inline]
 pub(crate) fn fill_estimated_quotients(
     row: &mut [u8],
@@ -56,8 +55,8 @@ pub(crate) fn fill_estimated_quotients(
     }
 }
 
-/// [`fill_estimated_quotients`] in whole blocks of eight, for which `row` has room, so that bytes after the first `length`
-/// are arbitrary. Returns false if an estimate cannot decide one of them; an arbitrary one counts, too.
+/// Fills as [`fill_estimated_quotients`] does, but in whole blocks of eight, for which `row` has room: bytes after the
+/// first `length` are arbitrary. Returns false if an estimate cannot decide a byte, including an arbitrary one.
 #[inline(always)]
 pub(crate) fn fill_estimated_blocks<S: Lanes8>(
     s: S,

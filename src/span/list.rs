@@ -24,13 +24,13 @@ type Depths = [i64; CAPACITY + LANES];
 /// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
 ///
 /// # Safety invariant
-/// The stores of AVX-512 rely on that. Only `append` and `push` add spans, and they add no others; for `append` it rests on
-/// `Lanes8` computing what its methods say.
+/// The stores of AVX-512 rely on that. Only `append` and `push` add spans, and they add none that lies outside;
+/// `append` relies on `Lanes8` to compute what its methods say.
 #[derive(Clone, Debug)]
 pub(crate) struct SpanList {
     /// Offsets of the first pixels.
     at: Numbers,
-    /// Offsets of the first cells, with depths and only if they differ from those of the pixels.
+    /// Offsets of the first cells, if there are depths and these offsets differ from those of the pixels.
     cell: Numbers,
     length: Numbers,
     /// The shade, with the step in the upper half.
@@ -56,7 +56,7 @@ pub(crate) struct SpanList {
 
 /// Columns of eight spans besides a linear shade.
 pub(crate) trait SpanColumns<S: Lanes8>: Copy {
-    /// Interleaves the columns: span 0 of both, span 1 of both, and so on.
+    /// Interleaves the columns of both: span 0 of each, span 1 of each, and so on.
     fn zip(self, s: S, other: Self) -> [Self; 2];
 }
 
@@ -89,7 +89,7 @@ pub(crate) enum DepthSteps<S: Lanes8> {
 }
 
 impl<S: Lanes8, C: SpanColumns<S>> Spans8<S, C> {
-    /// Spans 0 of both, spans 1 of both, and so on.
+    /// Interleaves the steps of both: spans 0, spans 1, and so on.
     #[inline(always)]
     pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, has_depths: bool) -> [Self; 2] {
         let [at, more_at] = s.interleave_i32(self.at, other.at);
@@ -179,7 +179,7 @@ impl SpanList {
         self.pitch == self.width
     }
 
-    /// The spans, of these eight, that have a length and lie inside.
+    /// The mask of those of these eight spans that have a length and lie inside.
     #[inline(always)]
     fn inside<S: Lanes8, C, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S, C>) -> S::Mask {
         // Each is negative if a span has no length, begins before the pixels, ends beyond 2³¹, or ends beyond the
@@ -199,7 +199,7 @@ impl SpanList {
         s.is_greater(sign, s.splat_i32(-1))
     }
 
-    /// Appends those of eight spans that have a length and lie inside. Without room for eight, some are left out.
+    /// Appends those of eight spans that have a length and lie inside. If there is no room for eight, some are dropped.
     /// Returns which were appended, and the index of the first.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8, C, const DEPTHS: bool>(
@@ -266,8 +266,8 @@ impl SpanList {
         self.count.min(CAPACITY)
     }
 
-    /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it lies
-    /// inside and there is room. Returns its index.
+    /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it
+    /// lies inside and there is room. Returns its index.
     pub(crate) fn push(
         &mut self,
         [at, cell]: [usize; 2],
@@ -288,7 +288,7 @@ impl SpanList {
         Some(k)
     }
 
-    /// Empties the list after its spans have been drawn, which wrote `nearer` pixels.
+    /// Empties the list after its spans have been drawn and `nearer` pixels have been written.
     pub(crate) fn clear(&mut self, nearer: u32) {
         // As in `draw_by`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
@@ -329,7 +329,7 @@ impl SpanList {
         (0..self.count()).map(|k| self.span(k))
     }
 
-    /// Fills each span with this function.
+    /// Fills each span by calling `fill`.
     #[inline(always)]
     pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
         for Span { at, length, paint } in self.spans() {
@@ -350,8 +350,8 @@ impl SpanList {
         })
     }
 
-    /// Passes the pixels and cells of each span to a loop that tests depths, with the span's index, its packed
-    /// shade and step, and its first depth and the depth step. Returns the sum of what the loop returns.
+    /// Calls a loop that tests depths for each span, with its pixels and cells, its index, its packed shade and step,
+    /// its first depth and its depth step. Returns the sum of the loop's results.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,
@@ -394,13 +394,13 @@ pub(crate) struct SpanStarts<const N: usize>([Depths; N]);
 impl<const N: usize> SpanStarts<N> {
     pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
 
-    /// Stores the lanes of the mask at the indices from `at` on.
+    /// Stores the lanes that the mask sets, at the indices from `at` on.
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S, N>) {
         s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
     }
 
-    /// [`put`](Self::put) for the first sums alone.
+    /// Stores only the first sums, like [`put`](Self::put).
     #[inline(always)]
     pub(crate) fn put_first<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), first: S::I64) {
         let [to, ..] = &mut self.0[..] else { return };
@@ -434,7 +434,7 @@ pub(crate) struct SpanNumbers<const N: usize>([Numbers; N]);
 impl<const N: usize> SpanNumbers<N> {
     pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
 
-    /// Stores the first `count` numbers of the lanes of the mask at the indices from `at` on.
+    /// Stores the first `count` numbers of the lanes that the mask sets, at the indices from `at` on.
     #[inline(always)]
     pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), numbers: [S::I32; N], count: usize) {
         // The condition is inside, so that the loop is unrolled and the numbers stay in registers.
@@ -465,12 +465,12 @@ pub(crate) struct SpanBytes([[u8; SpanBytes::LENGTH]; SpanBytes::COUNT]);
 impl SpanBytes {
     /// The most pixels of a span.
     pub(crate) const LENGTH: usize = 64;
-    /// Spans at a time.
+    /// The number of spans at a time.
     pub(crate) const COUNT: usize = 16;
 
     pub(crate) const NONE: Self = Self([[0; Self::LENGTH]; Self::COUNT]);
 
-    /// The bytes of span `k` of these.
+    /// The bytes of span `k` among these.
     #[inline(always)]
     pub(crate) fn of(&self, k: usize) -> &[u8; Self::LENGTH] {
         &self.0[k % Self::COUNT]
@@ -482,7 +482,7 @@ impl SpanBytes {
     }
 }
 
-/// Destination of spans.
+/// The destination of spans.
 pub(crate) struct Target<'a> {
     pub(crate) pixels: &'a mut [u8],
     /// The cells of the depth buffer, if there is one.
@@ -490,7 +490,7 @@ pub(crate) struct Target<'a> {
     pub(crate) kernel: Kernel,
 }
 
-/// Bytes for a span: its offset and depth, and the bytes, of which the first `length` are its own.
+/// The bytes of a span, with its offset and depth. Bytes after the first `length` are not its own.
 pub(crate) struct Written<'a> {
     pub(crate) at: u32,
     pub(crate) depth: SpanDepth,
@@ -500,8 +500,8 @@ pub(crate) struct Written<'a> {
 }
 
 impl Target<'_> {
-    /// Writes the bytes of these spans in order, if there are cells only where they are nearer, and with `keeps` their
-    /// depths to the cells. Returns the number of nearer pixels.
+    /// Writes the bytes of these spans in order: if there are cells, only where they are nearer, and with `keeps`
+    /// storing their depths in the cells. Returns the number of nearer pixels.
     #[inline(always)]
     pub(crate) fn write_each<'b, S: Lanes8>(
         &mut self,

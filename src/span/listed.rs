@@ -11,20 +11,20 @@ use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 pub struct ListedSpan {
     /// The offset of its first pixel.
     pub at: u32,
-    /// Pixels.
+    /// The number of pixels.
     pub length: u32,
-    /// Shade in 8.8, as `fill` takes it.
+    /// The shade in 8.8, as `fill` takes it.
     pub shade: u16,
-    /// Step in 8.8.
+    /// The step in 8.8.
     pub step: u16,
 }
 
 /// The depths of a span, and their position in the depth buffer.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct ListedDepths {
-    /// Depth of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
+    /// The depth of the first pixel, with 24 fraction bits, as `fill_nearer` takes it.
     pub z: i64,
-    /// Change per pixel.
+    /// The change per pixel.
     pub dz: i64,
     /// The offset of its first cell.
     pub at: u32,
@@ -71,8 +71,8 @@ pub fn fill_where_nearer<D: Cell>(
     list.counts().2
 }
 
-/// Writes the first `length` bytes where they are nearer, and with `keeps` their depths to the cells, as spans with
-/// effects are written: up to 64 pixels at a time. Pixels beyond the shortest of the three are left alone. Returns the
+/// Writes the first `length` bytes where they are nearer, and if `keeps` their depths to the cells, up to 64 pixels at
+/// a time, as spans with effects are written. Pixels beyond the shortest of the three are left alone. Returns the
 /// number of pixels written.
 pub fn write_nearer<D: Cell>(
     kernel: Kernel,

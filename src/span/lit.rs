@@ -12,7 +12,7 @@ use crate::simd::compiled_for_each_level;
 /// ```
 ///
 /// in f64, with products, sums and one reciprocal, each rounded once and in this order, then rounded to f32. Every
-/// point is computed from its own k, and from nothing that was computed before it.
+/// point is computed from its own k, and does not depend on the point before it.
 ///
 /// For Phong shading `a` is normal and position at pixel 0, each over w, and `d` is 1/w; `da` and `dd` are their
 /// changes per pixel. Points beyond the end of a row may be anything.
@@ -43,7 +43,8 @@ compiled_for_each_level! {
 /// The numerators of six numbers at each of eight pixels, and their denominators.
 pub(crate) type Numerators = [Lanes<f64>; 7];
 
-/// Dividends of [`interpolate_at`]: [`divide`] turns them into its results, also for pixels of different rows.
+/// The dividends and divisors of [`interpolate_at`], also for pixels of different rows: [`divide`] computes its results
+/// from them.
 #[inline(always)]
 pub(crate) fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
     let mut numerators = [[0.0; LANES]; 7];

@@ -16,7 +16,7 @@
 /// | Phong's, of 1994 | the normal's y | the normal's x |
 ///
 /// Vectors are not used: eight gathered loads per iteration (AVX2) take 20 ns at 64 pixels and 17 at 8, where this
-/// takes 29 and 6, and processors patched against gather data sampling are said to be much slower at it.
+/// takes 29 and 6, and gathers are said to be much slower on processors patched against gather data sampling.
 #[inline(never)]
 pub fn lookup(row: &mut [u8], high: &[u8], table: &[u8; 65_536]) {
     let n = row.len().min(high.len());
@@ -26,7 +26,8 @@ pub fn lookup(row: &mut [u8], high: &[u8], table: &[u8; 65_536]) {
     }
 }
 
-/// [`lookup`] that replaces the bytes which choose the row of the table: `rows[k] = table[rows[k] << 8 | low[k]]`.
+/// Looks up like [`lookup`], but replaces the bytes that choose the table's row: `rows[k] = table[rows[k] << 8 |
+/// low[k]]`.
 #[cfg(feature = "alloc")]
 #[inline]
 pub(crate) fn lookup_row(rows: &mut [u8], low: &[u8], table: &[u8; 65_536]) {

@@ -92,12 +92,12 @@ pub(crate) mod entry {
     pub use super::x86::entry::*;
 }
 
-/// Signature of every kernel: `row` (any length), `shade` and `step` in 8.8.
+/// The signature of every kernel: `row` (any length), `shade` and `step` in 8.8.
 type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 
 /// A loop that fills spans and that this machine can run.
 ///
-/// A kernel can only be obtained from the constructors here, which return none that the processor cannot run.
+/// A kernel can only be obtained from the constructors here, which never return one that the processor cannot run.
 ///
 /// ```
 /// use mode13h::span::Kernel;
@@ -113,15 +113,15 @@ type Fill = fn(row: &mut [u8], shade: u16, step: u16);
 pub struct Kernel {
     name: &'static str,
     level: Level,
-    /// Uses only features that every processor of the target has. Other levels hold a proof that this processor has
-    /// theirs, and have functions of their own.
+    /// Uses only features that every processor of the target has. Levels that need others hold a proof that this
+    /// processor has them, and have functions of their own.
     fill: Fill,
 }
 
-/// Level that a kernel draws with, and its function.
+/// The level that a kernel draws with, and its function.
 type Found = (Level, Fill);
 
-/// A kernel's name, and what finds it: `None` where the machine or the build lacks it.
+/// A kernel's name, and the function that finds it: it returns `None` where the machine or the build lacks the kernel.
 type Entry = (&'static str, fn() -> Option<Found>);
 
 /// A function that finds a kernel where its condition holds.
@@ -169,7 +169,7 @@ impl Kernel {
 
     /// The kernels that this machine and this build have, `portable` first.
     ///
-    /// `simd` is one of the `simd-…` levels under the name that programs ask for.
+    /// `simd` is one of the `simd-…` levels, under the name by which programs ask for the best.
     pub fn available() -> impl Iterator<Item = Self> + Clone {
         LISTED.iter().copied().filter_map(kernel)
     }
@@ -180,7 +180,7 @@ impl Kernel {
         self.name
     }
 
-    /// Name of the level that it draws with: for `simd` the chosen one, such as `avx2`.
+    /// The name of the level that it draws with: for `simd` the chosen one, such as `avx2`.
     #[must_use]
     pub const fn level(self) -> &'static str {
         self.level.name()
@@ -200,7 +200,8 @@ impl Kernel {
         }
     }
 
-    /// [`fill`](Self::fill) for the first `length` pixels of a row that has at least as many. The rest does not change.
+    /// Writes like [`fill`](Self::fill), but only the first `length` pixels of a row that has at least as many. The
+    /// rest does not change.
     #[inline]
     pub(crate) fn fill_first(self, length: usize, row: &mut [u8], shade: u16, step: u16) {
         // Usually short, with an unpredictable length: trailing bytes are rewritten unchanged, by code that is inlined.
@@ -254,9 +255,9 @@ impl Kernel {
         }
     }
 
-    /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades` gives
-    /// the first shade and the step of a span, from its index and its packed value. Returns the number of pixels that
-    /// were nearer.
+    /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades`
+    /// returns the first shade and the step of a span, given its index and its packed value. Returns the number of
+    /// pixels that were nearer.
     #[inline(always)]
     pub(crate) fn fill_spans_16_16(
         self,
@@ -309,7 +310,7 @@ impl Kernel {
         }
     }
 
-    /// The level that it draws with.
+    /// The level that this kernel draws with.
     #[inline]
     pub(crate) const fn simd_level(self) -> Level {
         self.level

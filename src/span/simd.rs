@@ -17,7 +17,7 @@ pub(super) mod arrays {
 
     /// Pixels per iteration: two vectors of shades.
     const BLOCK: usize = 2 * LANES;
-    /// Length from which on the compiler's own vectors of the portable loop are faster: on x86-64 9.7 ns at 160 pixels
+    /// The length from which the compiler's own vectors of the portable loop are faster: on x86-64 9.7 ns at 160 pixels
     /// and 30 here, about the same at 100, and 26 and 15 at random lengths of 1 to 64 pixels.
     const LONG: usize = 128;
 
@@ -281,7 +281,7 @@ pub(crate) mod avx2 {
     use crate::simd::Avx2;
     use core::arch::x86_64::*;
 
-    /// [`Kernel::fill`](super::super::Kernel::fill).
+    /// Fills a row as [`Kernel::fill`](super::super::Kernel::fill) says.
     #[inline]
     pub(crate) fn fill(_: Avx2, row: &mut [u8], shade: u16, step: u16) {
         // SAFETY: the token proves that the processor has AVX2.
@@ -301,7 +301,7 @@ pub(crate) mod avx2 {
     }
 
     /// Fills a span at `at`. `paint` has its shade, with the step in the upper half. Bytes after a span of up to 32
-    /// pixels, in whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not drawn.
+    /// pixels, of whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not drawn.
     #[inline]
     #[target_feature(enable = "avx2")]
     fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
@@ -309,7 +309,7 @@ pub(crate) mod avx2 {
         let (shade, step) = (paint as u16, (paint >> 16) as u16);
         // No overflow: both are below 2³², and usize has 64 bits.
         let (at, n) = (at as usize, length as usize);
-        // The bytes that stay, of 32 or of the first 16: from byte 32 or an earlier one on.
+        // The mask of the bytes that stay, 32 or the first 16 of these: it starts at byte 32 or an earlier one.
         let stays = MASK.as_ptr().cast::<u8>().wrapping_add(32_usize.wrapping_sub(n));
         if n <= 16
             && let Some(row) = pixels.get_mut(at..at + 16)

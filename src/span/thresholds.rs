@@ -36,7 +36,7 @@ impl DitherPattern {
     }
 }
 
-/// Columns after which the thresholds of a row repeat.
+/// The number of columns after which the thresholds of a row repeat.
 pub const PERIOD: usize = 64;
 
 /// The most neighbouring thresholds that [`ThresholdRow::next`] returns.
@@ -70,7 +70,7 @@ impl ThresholdRow {
         self.0[column % PERIOD]
     }
 
-    /// The thresholds of `N` columns, `column` first.
+    /// The thresholds of `N` columns, starting with `column`.
     #[cfg(any(feature = "alloc", feature = "simd"))]
     #[inline]
     pub(crate) fn next<const N: usize>(&self, column: usize) -> [u8; N] {
@@ -164,8 +164,9 @@ static PS1: [ThresholdRow; 4] = {
     rows
 };
 
-/// A mask by the void-and-cluster method (R. Ulichney, *The void-and-cluster method for dither array generation*, 1993):
-/// the pixels below any threshold are spread evenly, but without order. `tests/span/blue_noise.rs` generates the file.
+/// A mask by the void-and-cluster method (R. Ulichney, *The void-and-cluster method for dither array generation*,
+/// 1993): the pixels below any threshold are spread evenly, but without order. `tests/span/blue_noise.rs` generates the
+/// file.
 ///
 /// ```text
 /// threshold = rank >> 4        rank 0 to 4,095

@@ -57,7 +57,7 @@ pub(super) use x86_64::{fill, fill_unrolled};
 mod x86_64 {
     assemble!("../../asm/span_x86_64.s");
 
-    /// Signature of both loops: `row` is valid for `count` bytes, `count` is not 0.
+    /// The signature of both loops: `row` is valid for `count` bytes, `count` is not 0.
     pub type Entry = unsafe extern "sysv64" fn(row: *mut u8, count: u32, shade: u16, step: u16);
 
     unsafe extern "sysv64" {
@@ -83,7 +83,7 @@ mod x86_64 {
             let count = piece.len() as u32; // at most u32::MAX, by the cut
             // SAFETY: `piece` is `count` writable bytes, and `chunks_mut` gives none that is empty.
             unsafe { entry(piece.as_mut_ptr(), count, shade, step) };
-            // Only a piece of u32::MAX = 65,535 mod 65,536 pixels has one after it.
+            // Only a piece of u32::MAX pixels, 65,535 modulo 65,536, has one after it.
             shade = shade.wrapping_add(step.wrapping_mul(u16::MAX));
         }
     }
@@ -96,7 +96,7 @@ pub(super) use x86::fill;
 mod x86 {
     assemble!("../../asm/span_i686.s");
 
-    /// Signature of the loop: `row` is valid for `count` bytes, `count` is not 0.
+    /// The signature of the loop: `row` is valid for `count` bytes, `count` is not 0.
     pub type Entry = unsafe extern "cdecl" fn(row: *mut u8, count: u16, shade: u16, step: u16);
 
     unsafe extern "cdecl" {

@@ -101,8 +101,8 @@ const WOOD: &[Stop] = &[
 /// The number of entries of the wood's ramp.
 const WOODS: i32 = 96;
 
-/// A board: the shade of its wood, where `along` runs with the grain and `across` is `edge` texels from the lit edge
-/// and `far` from the other.
+/// The shade of a board's wood at a point: `along` runs with the grain and `across` against it, and the point is `edge`
+/// texels from the lit edge and `far` from the other.
 fn board(along: i32, across: i32, edge: i32, far: i32, number: u32) -> i32 {
     let tone = 56 + hash(number as i32, 7, 11) % 13 - 6;
     let fibres = (noise(along, across, (4, 0), number) - 128) / 12;
@@ -200,7 +200,7 @@ fn bricks() -> Texture {
 }
 
 /// A sphere map. The texel at (u, v) is the reflection in a mirror whose normal, in eye space, is n = (2u − 1, 2v − 1,
-/// nz). The view ray is reflected to r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight up half way from the middle to the
+/// nz). The view ray is reflected to r = (2·nz·nx, 2·nz·ny, 2·nz² − 1): straight up half way from the centre to the
 /// top. The horizon runs across the middle and all around the rim, beyond which it continues.
 fn sky() -> Texture {
     const SKIES: i32 = 96;

@@ -128,7 +128,7 @@ impl Texture {
         Ok(Self { texels, colors, width_bits: width.ilog2(), height_bits: height.ilog2() })
     }
 
-    /// Makes a texture of a single texel, which leaves a surface as plain as without a texture.
+    /// Makes a texture of a single texel, with which a surface looks as plain as without a texture.
     #[must_use]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }
@@ -187,7 +187,7 @@ impl Texture {
         &self.colors
     }
 
-    /// The texture's colours on a coloured surface: [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
+    /// The texture's colours on a coloured surface, by [`Rgb::modulate`] with `tint`, an MTL file's `Kd`. White leaves
     /// them unchanged.
     #[must_use]
     pub fn tinted(&self, tint: Rgb) -> [Rgb; 256] {

@@ -10,7 +10,7 @@ use crate::palette::Rgb;
 /// can produce, would give the larger.
 pub(super) fn nearest_power_of_two(side: u32) -> u32 {
     let lower = side.ilog2();
-    // 2ˡ and 2ˡ⁺¹ are equally near at their geometric mean, whose square is 2²ˡ⁺¹. At most 2²⁴.
+    // 2ˡ and 2ˡ⁺¹ are equally near at their geometric mean, whose square is 2²ˡ⁺¹; all of these are at most 2²⁴.
     let bits = if side * side > 1 << (2 * lower + 1) { lower + 1 } else { lower };
     bits.min(Texture::MAX_SIDE.ilog2())
 }

@@ -16,8 +16,8 @@ pub struct Area {
 }
 
 impl Area {
-    /// The rectangle of a mode 13h picture in a window: the largest of 4:3, centred. Both sides may be a fraction of a
-    /// pixel too short.
+    /// The rectangle of a mode 13h picture in a window: the largest 4:3 rectangle, centred. Both sides may be a
+    /// fraction of a pixel too short.
     pub fn within(width: usize, height: usize) -> Area {
         Area::of_shape((4, 3), width, height)
     }
@@ -32,7 +32,7 @@ impl Area {
     }
 
     /// Converts a point of the window to pixels of the picture that fills this rectangle: 0 to `columns` and 0 to
-    /// `rows` on the picture, outside these ranges beside it.
+    /// `rows`. Points beside the picture are outside these ranges.
     pub(super) fn to_picture(self, x: f32, y: f32, (columns, rows): (usize, usize)) -> (f32, f32) {
         let along = |at: f32, from: usize, length: usize, picture: usize| {
             (at - from as f32) * picture as f32 / length.max(1) as f32

@@ -18,7 +18,7 @@ pub struct Canvas<'a> {
 
 impl<'a> Canvas<'a> {
     /// A standalone canvas with a picture as large as fits, as in a window of this size. `None` unless there are
-    /// `width` × `height` pixels.
+    /// exactly `width` × `height` pixels.
     pub fn new(pixels: &'a mut [u32], width: usize, height: usize) -> Option<Canvas<'a>> {
         (width.checked_mul(height) == Some(pixels.len())).then(|| Canvas {
             pixels,

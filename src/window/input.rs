@@ -9,10 +9,11 @@ use minifb::{InputCallback, MouseButton, MouseMode, Window};
 use super::area::Area;
 use super::key::Key;
 
-/// The value that minifb reports for one notch. On X11, where the wheel is a button, it counts both press and release.
+/// The value that minifb reports for one notch of the wheel. On X11, where the wheel is a button, minifb counts both
+/// press and release.
 const NOTCH: f32 = if cfg!(all(unix, not(target_os = "macos"))) { 0.5 } else { 1.0 };
 
-/// A mark for each mouse button.
+/// A flag for each mouse button.
 #[derive(Clone, Copy, Hash, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Buttons {
@@ -25,7 +26,7 @@ pub struct Buttons {
 }
 
 impl Buttons {
-    /// The buttons that are marked here but not in `other`.
+    /// The buttons that are set here but not in `other`.
     fn but_not(self, other: Self) -> Self {
         let Self { left, middle, right } = self;
         Self { left: left && !other.left, middle: middle && !other.middle, right: right && !other.right }
@@ -51,7 +52,7 @@ pub struct Input {
     pub mouse: Option<(f32, f32)>,
     /// The mouse buttons that are down.
     pub buttons: Buttons,
-    /// The mouse buttons that went down since the last frame, and are down still.
+    /// The mouse buttons that went down since the last frame, and are still down.
     pub buttons_pressed: Buttons,
     /// The mouse buttons that went up since the last frame.
     pub buttons_released: Buttons,

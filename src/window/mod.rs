@@ -1,7 +1,7 @@
 //! A window that shows a [`Vga`] or any other picture, and its user input.
 //!
-//! [`run`] is the whole frame loop of a game in mode 13h; [`Window`] is for programs with their own loop, or with frames
-//! of another size. Without a display, both return a [`WindowError`] and do not panic.
+//! [`run`] is the whole frame loop of a game in mode 13h; [`Window`] is for programs with their own loop, or with
+//! frames of another size. Without a display, both return a [`WindowError`] and do not panic.
 
 mod area;
 mod canvas;
@@ -279,8 +279,8 @@ impl Window {
         self.send()
     }
 
-    /// Leaves the last picture as it is, and waits for user input, at most for `longest`, so that a
-    /// still picture costs next to nothing. Input is checked every 25 ms.
+    /// Leaves the last picture on the screen, and waits for user input, at most for `longest`, so a still picture costs
+    /// next to nothing. Input is checked every 25 ms.
     ///
     /// A display may forget the contents of a covered window, so the picture is resent twice a second.
     ///

@@ -7,8 +7,8 @@ const LARGEST: (usize, usize) = (960, 720);
 
 pub(super) fn open(title: &str) -> Result<Window> {
     let options = WindowOptions { resize: true, scale_mode: ScaleMode::Stretch, ..WindowOptions::default() };
-    // Open until the window exists: when its last window closes, an X server without a desktop
-    // resets, and refuses connections meanwhile.
+    // Kept open until the window exists: when its last window closes, an X server without a desktop resets, and refuses
+    // connections meanwhile.
     let probe = Probe::new()?;
     if probe.fits_largest() {
         Window::new(title, LARGEST.0, LARGEST.1, options)

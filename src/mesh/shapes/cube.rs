@@ -8,8 +8,8 @@ use super::toward_zero;
 use crate::mesh::Mesh;
 
 /// A cube with its corners on the unit sphere: edges of 2/√3, 24 vertices, 12 triangles. Every face has its own normal
-/// and its own square of texture coordinates, 0 to 1, upright on the four sides; the upper edge is at the back on top
-/// and at the front on the bottom.
+/// and its own square of texture coordinates, 0 to 1. Textures stand upright on the four sides; on the top their upper
+/// edge is at the back, and on the bottom at the front.
 #[must_use]
 pub fn cube() -> Mesh {
     let half = toward_zero(1.0 / libm::sqrt(3.0));

@@ -75,7 +75,7 @@ pub fn by_name(name: &str) -> Option<Mesh> {
     TABLE.iter().find(|row| row.0 == name).map(|row| row.1())
 }
 
-/// Rounds to the f32 next to `value` on the side of zero.
+/// Rounds to f32, toward zero.
 fn toward_zero(value: f64) -> f32 {
     // Rounds to the nearest.
     let nearest = value as f32;

@@ -98,7 +98,7 @@ pub fn torus(u: u32, v: u32) -> Mesh {
 /// sphere: `slices` around (at least 3), `stacks` from base to apex (at least 1, at most 256). It has slices · 2 ·
 /// stacks triangles.
 ///
-/// At the apex each slice has a vertex of its own, with the normal of the slice's middle.
+/// At the apex each slice has a vertex of its own, with the normal at the slice's middle.
 #[must_use]
 pub fn cone(slices: u32, stacks: u32) -> Mesh {
     let (slices, stacks) = (slices.clamp(3, MAX_PARTS), stacks.clamp(1, 256));
@@ -110,8 +110,8 @@ pub fn cone(slices: u32, stacks: u32) -> Mesh {
     let mut positions = Vec::new();
     let mut normals = Vec::new();
     for stack in 0..stacks {
-        // In 256ths, and the base in 2¹⁵ths, so that their product has 23 bits, which f32 holds: the vertices along a
-        // slice's side lie exactly on one line, the quads exactly in one plane.
+        // In 256ths, and the base in 2¹⁵ths, so that their product has 23 bits and fits an f32 exactly: the vertices
+        // along a slice's side lie exactly on one line, and those of a quad exactly in one plane.
         let part = f64::from((stacks - stack) * 256 / stacks) / 256.0;
         for slice in 0..slices {
             let direction = turn(f64::from(slice), slices);

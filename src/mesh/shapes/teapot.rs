@@ -114,7 +114,7 @@ fn evaluate(patch: &Patch, u: f64, v: f64) -> (Wide, Wide) {
     let along_v = blend(dv, rows);
     let slopes = patch.map(|row| blend(du, row));
     // At a pole the row of control points is a single point, so ∂u vanishes. Near it, ∂u is ∂²/∂u∂v times the distance
-    // from the pole, so ∂²/∂u∂v gives its direction.
+    // from the pole, so ∂²/∂u∂v gives the direction of ∂u.
     let is_pole = |row: usize| patch[row].iter().all(|p| *p == patch[row][0]);
     let direction = if v == 0.0 && is_pole(0) {
         blend(dv, slopes)

@@ -35,7 +35,7 @@ pub struct EffectBatch {
 /// knows their lengths.
 #[derive(Clone, Debug)]
 struct CornerColumns {
-    /// Positions of all faces, for culling. The others are of those that are drawn.
+    /// The positions of all faces, for culling. The other columns hold only the faces that are drawn.
     all: Corners<ScreenPos, CAPACITY>,
     at: Corners<ScreenPos, CAPACITY>,
     depth: Corners<u32, CAPACITY>,
@@ -66,7 +66,7 @@ impl CornerColumns {
         }
     };
 
-    /// Copies what the pipeline uses of a face, which becomes number `to` of those that are drawn.
+    /// Copies the values of a face that the pipeline uses. The face becomes number `to` of those that are drawn.
     #[inline(always)]
     fn copy(&mut self, (vertices, attributes): &EffectFace, to: usize, uses: Uses) {
         put_positions(&mut self.at, to, vertices);
@@ -163,7 +163,7 @@ impl<D: Cell> Raster<'_, D> {
         drawn
     }
 
-    /// Draws faces in order through one pixel pipeline, with the memory of a batch, whose own faces stay in it.
+    /// Draws faces in order through one pixel pipeline, with the memory of a batch. The batch keeps its own faces.
     pub fn faces_with_effects(
         &mut self,
         faces: &[EffectFace],

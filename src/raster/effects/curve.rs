@@ -13,7 +13,7 @@
 //! The weights at a pixel are exact, and none is negative where it is covered, so no term exceeds the six shades, and
 //! f64 is accurate to a few parts in 2⁵⁰ however thin the triangle. Along a row of n pixels q = a + kb + k²c. Since |q|
 //! ≤ 5/3 of the greatest shade M, n·|b| and n²·|c| are at most 8 · 5/3 · M (Markov): in f32 they are off by less than
-//! 2⁻²⁰ · M together, for shades up to 1 by a thousandth of a shade.
+//! 2⁻²⁰ · M together, a thousandth of a shade for shades up to 1.
 
 use super::Limits;
 use super::listing::FaceCorners;

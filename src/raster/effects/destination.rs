@@ -1,5 +1,5 @@
-//! Where the span loops write their pixels: to the stages' buffer, to the frame, or to the frame
-//! where they are nearer.
+//! Where the span loops write their pixels: to the stages' buffer, to the frame, or to the frame only where they are
+//! nearer.
 
 use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
@@ -11,18 +11,18 @@ use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_blo
 
 /// Destination of the pixels of spans.
 pub(super) trait Destination {
-    /// True if two short spans are shown at once. With a depth buffer it is slower than one by one, since some of them are
-    /// hidden.
+    /// True if two short spans are shown at once. With a depth buffer that is slower than showing them one by one,
+    /// since some of them are hidden.
     const SHOWS_PAIRS: bool = true;
 
-    /// Where the pixels of span `i` begin, how many there are, and how many leading ones are left
-    /// out.
+    /// Where the pixels of span `i` begin, how many there are, and how many leading pixels are skipped.
     fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
 
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
 
-    /// Writes texels to the pixels of span `i` from `at` on, after this many of its drawn ones.
+    /// Writes texels to the pixels of span `i` from `at` on. The number is that of the span's drawn pixels before
+    /// these.
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
@@ -42,7 +42,7 @@ pub(super) trait Destination {
 pub(super) struct Pair {
     /// Where the pixels of each begin.
     pub(super) at: [usize; 2],
-    /// How many leading pixels of each are left out.
+    /// How many leading pixels of each are skipped.
     pub(super) skipped: [u32; 2],
     /// How many pixels of each there are.
     lengths: [usize; 2],
@@ -65,14 +65,14 @@ impl Pair {
         Some(Self { at: [a, b], skipped: [skipped_a, skipped_b], lengths: [length_a, length_b] })
     }
 
-    /// The mask of the pixels that stay as they are, four of each.
+    /// The mask of the pixels that stay as they are, four for each span.
     #[inline(always)]
     pub(super) fn stays(&self) -> u64 {
         let [low, high] = self.lengths;
         behind(low) & u64::from(u32::MAX) | behind(high) << 32
     }
 
-    /// The numbers of the pixels in their spans.
+    /// The indices of the pixels in their spans.
     #[inline(always)]
     pub(super) fn numbers<S: Lanes8>(&self, s: S) -> S::I32 {
         let [a, b] = self.skipped;
@@ -80,7 +80,7 @@ impl Pair {
         s.add_i32(s.load_i32(&[0, 1, 2, 3, 0, 1, 2, 3]), s.halves_i32([a.cast_signed(), b.cast_signed()]))
     }
 
-    /// [`numbers`](Self::numbers) in f32.
+    /// The [`numbers`](Self::numbers) in f32.
     #[inline(always)]
     pub(super) fn numbers_f32<S: F32Lanes8>(&self, s: S) -> S::F32 {
         let [a, b] = self.skipped;
@@ -119,13 +119,13 @@ impl Destination for InFrame<'_> {
     }
 }
 
-/// The frame, written under masks: if there are cells, only where pixels are nearer.
+/// The frame, written under masks: if there are cells, only where pixels are nearer than their depths.
 pub(super) struct Masked<'a> {
     pub(super) pixels: &'a mut [u8],
     pub(super) cells: Option<&'a mut [u32]>,
     /// True if nearer depths are stored in the cells.
     pub(super) keeps: bool,
-    /// Pixels that were nearer so far.
+    /// The number of pixels that were nearer so far.
     pub(super) nearer: u32,
 }
 
@@ -195,7 +195,7 @@ impl Destination for Masked<'_> {
     }
 }
 
-/// The mask of a block in which only the first pixels of this number are drawn, at most eight.
+/// The mask of a block of which only the first `length` pixels, at most eight, are drawn.
 #[inline(always)]
 fn behind(length: usize) -> u64 {
     if length < LANES { u64::MAX << (8 * length) } else { 0 }

@@ -17,7 +17,7 @@ pub(super) enum Direct<'a> {
 
 /// Returns whether a table row leaves every texel unchanged.
 fn is_identity(row: &[u8; 256]) -> bool {
-    // Comparing arrays would call `bcmp`, which the C library's archive does not ask its host for.
+    // Comparing arrays would call `bcmp`, which the C library's archive does not require its host to provide.
     row.iter().zip(0_u8..=255).fold(0, |differ, (&shown, texel)| differ | shown ^ texel) == 0
 }
 

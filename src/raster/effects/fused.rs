@@ -108,7 +108,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, tint: T, to: &mut D) {
-    // A build for size has no such pipeline; here the compiler sees that.
+    // A build for size has no such pipeline; this tells the compiler so.
     if IS_SMALL {
         return;
     }

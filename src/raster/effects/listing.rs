@@ -45,7 +45,7 @@ pub(super) struct Mark([u32; 2]);
 
 impl Mark {
     fn new(face: u32, [skipped, number, last]: [i32; 3], [column, row]: [i32; 2]) -> Self {
-        // Below 64, 128 and 8,192; below 65,536.
+        // The numbers are below 64, 128 and 8,192, column and row below 65,536.
         let place = column.cast_unsigned() | row.cast_unsigned() << 16;
         Self([face | (skipped << 6 | number << 12 | last << 19).cast_unsigned(), place])
     }
@@ -205,8 +205,8 @@ impl FaceCorners<'_> {
         (planes, level.unwrap_or_default())
     }
 
-    /// Texture coordinates linear on the face. One that all corners share is moved to the middle of its texel, as in the
-    /// set-up of eight.
+    /// Texture coordinates linear on the face. A coordinate that all corners share is moved to the middle of its texel,
+    /// as in the eight-lane set-up.
     pub(super) fn perspective_texture(&self) -> PerspectiveTexture {
         let coordinates = [self.texture(0), self.texture(1)].map(|[a, b, c]| match a == b && b == c {
             true => [a & !0xFFFF | 0x8000; 3],
@@ -230,7 +230,7 @@ impl FaceCorners<'_> {
         three(self.face.corners, |vertex| i64::from(self.columns.value(value, vertex, self.face.side)))
     }
 
-    /// Input of light, or the shades of a curve.
+    /// The input of light, or the shades of a curve.
     #[inline]
     pub(super) fn lit(&self) -> [[f32; 6]; 3] {
         three(self.face.corners, |vertex| self.columns.lit.get(vertex, self.face.side))
@@ -277,7 +277,7 @@ impl Columns {
     };
 }
 
-/// Values set up for each face besides its shade.
+/// The values set up for each face besides its shade.
 #[derive(Clone, Copy)]
 struct Wanted {
     /// Texture coordinates that are linear on the screen, or on the face.
@@ -288,7 +288,7 @@ struct Wanted {
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last one in use.
     slots: usize,
-    /// Shades and channels are reseeded with each span.
+    /// True if shades and channels are reseeded with each span.
     reseeds: bool,
 }
 
@@ -381,7 +381,7 @@ impl ListedFaces<'_> {
         }
     }
 
-    /// The texture coordinates of a face, linear on it, and their levels, as they are defined.
+    /// The texture coordinates of a face, linear on it, and their levels, by their definitions.
     pub(super) fn exact_texture(&self, face: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
         if let Some(WalkedFace { texture: Some(WalkedTexture::OnFace(coordinates)), levels, .. }) = self.walked {
             return (coordinates, levels);
@@ -420,7 +420,7 @@ impl<'a> EffectSpans<'a> {
         Self { listed, pipeline, buffers }
     }
 
-    /// The mapping of the texture coordinates that spans have.
+    /// The mapping of the spans' texture coordinates, if they have any.
     pub(super) fn mapping(&self) -> Option<Mapping> {
         self.listed.wanted.texture
     }
@@ -437,7 +437,7 @@ impl<'a> EffectSpans<'a> {
         let triangle = corners.triangle;
         let Wanted { texture, last_level, .. } = self.listed.wanted;
         let planes = &mut self.listed.planes[0];
-        // Columns and rows are those of the frame.
+        // Columns and rows are counted from the frame's first.
         (planes.column, planes.row) = ([0; LANES], [0; LANES]);
         let mut levels = None;
         let texture = texture.map(|mapping| match mapping {

@@ -82,7 +82,7 @@ fn places(first: usize) -> Lanes<f64> {
 
 /// Pixels of several rows, pending until eight of them are lit together.
 struct Waiting {
-    /// The first eight make a full block; after them is room for what one more row adds.
+    /// The first eight make up a full block; the rest is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
     /// The index of each among the pixels of all spans.
     places: [usize; 2 * LANES],
@@ -107,7 +107,7 @@ impl Waiting {
             }
         }
         if let Some(to) = self.places[at..].first_chunk_mut() {
-            // Those after the last are not used.
+            // The places after the last pixel are not used.
             *to = each!(lane => first + lane);
         }
         self.count = at + count;
@@ -128,7 +128,7 @@ impl Waiting {
         }
     }
 
-    /// Removes the first eight.
+    /// Removes the first eight, which have been lit.
     #[inline(always)]
     fn advance(&mut self) {
         for waiting in &mut self.numerators {
@@ -246,7 +246,7 @@ impl Knots {
         Self { spacing, places, count: span.len.div_ceil(spacing) + 1 }
     }
 
-    /// Lights the knots, eight at a time, and passes each eight on with the index of the first.
+    /// Calls `light` with the points of the knots, eight at a time, and the index of the first of them.
     fn light(&self, plane: &LitPlane, span: &Span, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
         let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
         for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {

@@ -1,7 +1,8 @@
 //! Triangles with effects: textures, fog, glass, dither, three channels of light, light at every pixel.
 //!
 //! A [`PixelPipeline`] says what happens to the pixels of a triangle, by tables of 256 × 256 palette indices
-//! ([`Lut64K`](crate::palette::Lut64K)); [`Attributes`] are the values of its corners beyond a [`Vertex`](super::Vertex).
+//! ([`Lut64K`](crate::palette::Lut64K)); [`Attributes`] are the values of its corners beyond a
+//! [`Vertex`](super::Vertex).
 //!
 //! ```
 //! use mode13h::fixed::{I24F8, U8F8};
@@ -48,8 +49,8 @@
 //!
 //! Shades and channels are interpolated as the [`Interpolation`](super::Interpolation) says; fog and the coordinates in
 //! the table of normals are linear, reseeded every 64 pixels whatever the shading. No sum leaves the range of the three
-//! corners. With dither, whose threshold of 0 to 255 replaces the half, a byte lies in [min >> 8, ⌈max⌉]. A pixel's byte
-//! does not depend on the clip rectangle.
+//! corners. With dither, whose threshold of 0 to 255 replaces the half, a byte lies in [min >> 8, ⌈max⌉]. A pixel's
+//! byte does not depend on the clip rectangle.
 
 // Faces of one `PixelPipeline` are picked, set up and listed like plain ones, eight at a time. A face too large for
 // that, and every face on a processor without f64, is walked row by row. `EffectBatch` takes faces given as vertices.
@@ -287,7 +288,7 @@ fn draw_effects_by<S: Lanes8, const MAPPED: u8>(
     draw_triangles::<S, _, true, true>(s, of, place, target, &mut spans.with_mapping::<MAPPED>(), list)
 }
 
-/// Draws triangles with effects by what every processor of the target has.
+/// Draws triangles with effects, using only instructions that every processor of the target has.
 #[inline(never)]
 fn draw_at_baseline(
     of: Drawn<'_>,

@@ -1,4 +1,4 @@
-//! Pixel pipeline of a triangle: the source of its shades, and the stages they pass through.
+//! The pixel pipeline of a triangle: the source of its shades, and the stages they pass through.
 
 use crate::fixed::U8F8;
 use crate::lanes::{Lanes, Points};
@@ -19,14 +19,14 @@ pub trait PixelLighting: core::fmt::Debug {
     fn channels(&self, points: &Points) -> [Lanes<u16>; 3];
 }
 
-/// Source of a pixel's shade.
+/// The source of a pixel's shade.
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub enum ShadeSource<'a> {
     /// The corners' shades, or each of their channels, interpolated by this shading.
     ///
-    /// [`GouraudVintage`](Interpolation::GouraudVintage) contributes only the shades; coverage stays exact, because
-    /// only there are the values of all stages in range.
+    /// [`GouraudVintage`](Interpolation::GouraudVintage) contributes only the shades; coverage stays exact, because the
+    /// values of all stages are in range only inside the triangle.
     Shaded(Interpolation),
     /// [`Attributes::slope`](super::Attributes::slope), linear on the screen, looked up: row and column give the shade.
     NormalTable(&'a [u8; 65_536]),
@@ -39,8 +39,8 @@ pub enum ShadeSource<'a> {
     /// in between.
     LitEvery(SampleSpacing, &'a dyn PixelLighting),
     /// Quadratic on the screen, through the six shades of [`Attributes::lit`](super::Attributes::lit): at the corners
-    /// and at the midpoints of the edges. Clamped to these limits, one pair for each channel; a single shade uses the
-    /// first.
+    /// and at the midpoints of the edges. Shades are clamped to these limits, one pair for each channel; a single shade
+    /// uses the first.
     Curved([Limits; 3]),
 }
 
@@ -53,7 +53,7 @@ pub struct Limits {
     pub most: U8F8,
 }
 
-/// Distance between two lit pixels of a row.
+/// The distance between two lit pixels of a row.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub enum SampleSpacing {
     /// 4 pixels.
@@ -68,7 +68,7 @@ impl SampleSpacing {
     /// All spacings, the closest first.
     pub const ALL: [Self; 3] = [Self::Four, Self::Eight, Self::Sixteen];
 
-    /// Distance in pixels.
+    /// The distance in pixels.
     #[must_use]
     pub const fn pixels(self) -> usize {
         match self {
@@ -79,7 +79,7 @@ impl SampleSpacing {
     }
 }
 
-/// Result of mixing three channels.
+/// The result of mixing three channels.
 #[derive(Clone, Copy, Debug)]
 pub enum Mix<'a> {
     /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
@@ -88,7 +88,7 @@ pub enum Mix<'a> {
     Nearest {
         /// Indices by red, green and blue, five bits each.
         map: &'a [u8; 32_768],
-        /// Range over which dither moves a channel, from end to end.
+        /// The range over which dither moves a channel, from end to end.
         spread: u8,
     },
     /// No mixing: one channel's shades as they are, 0 red, 1 green, 2 blue, for measurements.
@@ -100,7 +100,7 @@ pub enum Mix<'a> {
 pub struct TextureStage<'a> {
     /// The image.
     pub texels: Texels<'a>,
-    /// Its smaller copies, one of which is used where a pixel spans more than √2 texels; `None` for the image alone.
+    /// Its smaller copies, one of which is used where a pixel spans more than √2 texels; `None` to use the image alone.
     pub levels: Option<Levels<'a>>,
     /// How its coordinates are interpolated.
     pub mapping: Mapping,
@@ -149,17 +149,17 @@ impl<'a> Image<'a> {
     }
 }
 
-/// At least as many as the levels of an image, itself included: a power of two, so that a mask keeps indices in range.
+/// At least the number of an image's levels, level 0 included; a power of two, so that a mask keeps indices in range.
 pub(super) const LEVELS: usize = 16;
 const _: () = assert!((Texels::MAX_BITS as usize) < LEVELS);
 
-/// Stages that the pixels of a triangle pass through: shade, texture, fog, blend.
+/// The stages that the pixels of a triangle pass through: shade, texture, fog, blend.
 ///
-/// Tables have 256 rows of 256 palette indices, row by row. [`Lut64K`] makes each kind, and
-/// [`as_array`](Lut64K::as_array) lends it.
+/// Tables have 256 rows of 256 palette indices, row by row. [`Lut64K`] makes each kind, and its
+/// [`as_array`](Lut64K::as_array) returns the bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelPipeline<'a> {
-    /// Source of the shades.
+    /// The source of the shades.
     pub source: ShadeSource<'a>,
     /// Red, green and blue instead of one shade, and what they are mixed to.
     pub channels: Option<Mix<'a>>,
@@ -168,9 +168,9 @@ pub struct PixelPipeline<'a> {
     pub dither: Option<Thresholds>,
     /// An image.
     pub texture: Option<TextureStage<'a>>,
-    /// Fog: the index for a level of fog (row) and the index without fog (column), by [`Lut64K::fog`].
+    /// Fog: the index for a level of fog (row) and the index without fog (column), made by [`Lut64K::fog`].
     pub fog: Option<&'a [u8; 65_536]>,
-    /// Glass: the index for the triangle's own (row) and the one in the frame (column), by [`Lut64K::blend`] or
+    /// Glass: the index for the triangle's own (row) and the one in the frame (column), made by [`Lut64K::blend`] or
     /// [`Lut64K::add`].
     pub blend: Option<&'a [u8; 65_536]>,
     /// True if the depth buffer keeps the triangle's depth, so that it hides what is drawn behind it later. Glass does

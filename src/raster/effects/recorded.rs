@@ -23,13 +23,13 @@ pub(super) struct Recorded {
     /// The index of its pick.
     pub(super) pick: usize,
     pub(super) span: Span,
-    /// Start and step.
+    /// The start and the step of each texture coordinate.
     pub(super) affine: [[u32; 2]; 2],
     pub(super) perspective: PerspectiveSums<f64>,
-    /// In f32, if quotients may be taken in f32.
+    /// The sums in f32, if quotients may be taken in f32.
     pub(super) singles: Option<PerspectiveSums<f32>>,
     pub(super) depth: [i64; 2],
-    /// Levels of some pixels, if the image has any: as found for eight triangles, and as defined.
+    /// The levels of some pixels, if the image has any: those found for eight triangles, and those by definition.
     pub(super) levels: Vec<(Option<AffineLevel>, AffineLevel)>,
     /// The level of all of the face's pixels, if it is linear on the face and has only one.
     pub(super) single_level: Option<u32>,

@@ -147,7 +147,7 @@ fn mix_nearest_by<S: Lanes8>(
 ) {
     for span in spans.iter() {
         let (thresholds, column) = (span.thresholds(dither), span.column());
-        // Whole blocks: the next span overwrites what follows this one, and there is room after the last.
+        // Whole blocks: the next span overwrites the bytes after this one, and there is room after the last.
         let pixels = span.first..span.first + span.len.next_multiple_of(LANES);
         let (reds, greens, blues) = (&red[pixels.clone()], &green[pixels.clone()], &blue[pixels.clone()]);
         let eights = to[pixels].as_chunks_mut::<LANES>().0;

@@ -178,7 +178,7 @@ impl<'a> Spans<'a> {
         self.listed.corners(span.mark.face())
     }
 
-    /// The texture coordinates of the face of span `i`, linear on it, and their levels, as they are defined.
+    /// The texture coordinates of the face of span `i`, linear on it, and their levels, by their definitions.
     pub(super) fn exact_texture(&self, i: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
         self.listed.exact_texture(self.listed.mark(self.first + i).face())
     }

@@ -41,7 +41,7 @@ pub(super) fn show_texture<T: Tint, D: Destination>(
     }
 }
 
-/// [`show_texture`], of an image with levels.
+/// Draws an image with levels, like [`show_texture`].
 #[inline(always)]
 pub(super) fn show_mipmaps<T: Tint, D: Destination>(
     spans: &Spans<'_>,
@@ -81,7 +81,7 @@ impl Spans<'_> {
                 // Beyond the triangle there may be no coordinates at all.
                 let next = (x + EVERY).min(last).max(x);
                 let [from, to] = [x, next].map(|x| plane.at(x, y).map(|coordinate| coordinate >> level));
-                // Wrapping is intended: texels repeat. It is never −2³¹ by −1.
+                // Wrapping is intended, since texels repeat. The division is never −2³¹ by −1.
                 let step = |i: usize| (to[i].wrapping_sub(from[i]) / (next - x).max(1)) as u32;
                 let [u, v] = from.map(i32::cast_unsigned);
                 fill_affine(part, all[level as usize % LEVELS], u, v, step(0), step(1));
@@ -152,7 +152,7 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
     }
 }
 
-/// Draws the texels of spans `i` and `i + 1`, whose indices `places` gives, four for each.
+/// Draws the texels of spans `i` and `i + 1`. `places` returns their indices, four for each.
 #[inline(always)]
 fn show_two<S: Lanes8, T: Tint, D: Destination>(
     s: S,
@@ -161,7 +161,7 @@ fn show_two<S: Lanes8, T: Tint, D: Destination>(
     to: &mut D,
     places: impl FnOnce() -> S::I32,
 ) {
-    // The numbers begin after the pixels that are left out.
+    // The numbers start after the skipped pixels.
     let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
     show_pair(s, (to.all(), pair.at, pair.stays()), image, (tint, values), places());
 }
@@ -175,7 +175,7 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     to: &mut D,
 ) {
     let (has_levels, all) = (image.levels.is_some(), image.all());
-    // The level of the face before, whose set-up is kept.
+    // The level of the previous face, whose set-up is kept.
     let (mut texels, mut shown) = (all[0], 0);
     let mut places = PlaceLanes::of_level(s, (texels, 0));
     for i in 0..spans.count() {
@@ -268,13 +268,13 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     (to, level): (&mut D, Level),
 ) {
     let (all, last_level) = (&image.all(), image.last());
-    // The level of the face before, whose set-up is kept.
+    // The level of the previous face, whose set-up is kept.
     let mut image = (all[0], 0);
     let mut places = PlaceLanes::of_level(s, image);
     for i in 0..spans.count() {
         let (at, length, skipped) = to.span(spans, i);
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
-        // Inlined for quotients in f32 alone, since each loop takes long to compile.
+        // Only the loop with quotients in f32 is inlined, since each loop takes long to compile.
         if let Some(level) = single.filter(|_| !IS_COMPACT && spans.fits_singles(i)) {
             if level != image.1 {
                 image = (all[level as usize % LEVELS], level);
@@ -285,7 +285,7 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
             continue;
         }
         let to = (&mut *to, level);
-        // Moved: see `show_part`.
+        // A closure that moves: see `show_part`.
         s.apart(
             #[inline(always)]
             move || show_parts(s, (spans, i), (at, length, skipped), (all, last_level, single), tint, to),
@@ -332,7 +332,7 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Draws texels in a span from its pixel `first` on, linear on the face, after this many of its drawn pixels.
+/// Draws texels in a span, linear on the face, from its pixel `first` on; `before` of its drawn pixels come earlier.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
@@ -345,7 +345,7 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     if !IS_COMPACT && spans.fits_singles(i) {
         show_in_singles((spans, i, before), (at, length), first, (image, places), tint, to);
     } else {
-        // Moved, so that nothing that the others use has to be in memory.
+        // A closure that moves, so that nothing that the other loops use has to be in memory.
         places.s.apart(
             #[inline(always)]
             move || {
@@ -514,7 +514,7 @@ mod tests {
             let plane = AffinePlane::new(&triangle, Divisor::new(triangle.area()), coordinates);
             let [gx, _] = plane.gradient();
             let in_level = AffineLevel { level, falls: [gx < 0; 2] };
-            // Modulo 2²⁴, as far as the index of a texel goes.
+            // Modulo 2²⁴, all that a texel's index depends on.
             let of_level = |x: u32| in_level.of([x; 2])[1] & 0xFF_FFFF;
             let mut rows = std::vec::Vec::new();
             triangle.rows(4_096, Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 }, |row| rows.push(row));
@@ -629,7 +629,7 @@ mod tests {
         }
     }
 
-    /// Eight triangles with textures, some of them slivers, some with levels that only just differ.
+    /// Eight triangles with textures, some of them slivers, some with levels that differ only slightly.
     fn leveled() -> impl Strategy<Value = Given> {
         let depth = prop_oneof![4 => 16.0..30.0_f64, 1 => 0.0..16.0_f64];
         let sliver = prop::option::of((0.0..1.0_f64, 0..3_i32));
@@ -666,8 +666,8 @@ mod tests {
         prop::array::uniform8(triangle.boxed())
     }
 
-    /// Levels found for eight triangles at a time match the definition. In perspective, an estimate decides most of them,
-    /// and some faces are known to have a single one.
+    /// Levels found for eight triangles at a time match the definition. In perspective, an estimate decides most of
+    /// them, and some faces are known to have a single one.
     #[test]
     fn levels_are_the_definition() {
         for mapping in [Mapping::Affine, Mapping::Perspective] {
@@ -783,9 +783,9 @@ mod tests {
         assert!(all.get() > 100_000 && decided.get() > all.get() / 2, "{} of {}", decided.get(), all.get());
     }
 
-    /// Two far corners, whose edge goes through pixel centres, and a near one beside it: on the edge the planes' terms are up
-    /// to 2³² times as large as the divisor. There u lies on the border of a texel, and v changes slowly. Quotients and levels
-    /// that are decided are right.
+    /// Two far corners, whose edge goes through pixel centres, and a near one beside it: on the edge the planes' terms
+    /// are up to 2³² times as large as the divisor. There u lies on the border of a texel, and v changes slowly.
+    /// Quotients and levels that are decided are right.
     #[test]
     fn far_edges_are_decided_right() {
         let decided = core::cell::Cell::new([0; 3]);
@@ -861,8 +861,8 @@ mod tests {
         assert!(in_f64 > 10_000 && in_f32 > 1_000 && levels > 10_000, "{in_f64}, {in_f32} and {levels}");
     }
 
-    /// Where all corners share a coordinate, quotients decide every pixel, even if it lies on the border of a texel. (It
-    /// took a textured torus without coordinates four times as long when they did not.)
+    /// Where all corners share a coordinate, quotients decide every pixel, even if it lies on the border of a texel.
+    /// (It took a textured torus without coordinates four times as long when they did not.)
     #[test]
     fn shared_coordinates_are_decided() {
         let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(2_000));

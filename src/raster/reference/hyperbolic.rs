@@ -61,7 +61,7 @@ impl HyperbolicPlane {
         (n, 256 * d)
     }
 
-    /// Change of both from one pixel to the next.
+    /// The changes of both from one pixel to the next.
     #[must_use]
     pub(crate) fn step(&self) -> (i128, i128) {
         let (n, d) = self.sums(self.weights.per_column(), 128);
@@ -83,8 +83,8 @@ impl HyperbolicPlane {
     }
 
     /// Numerator and divisor in f64 at a pixel, and their changes per pixel: their quotients over a row of this many
-    /// pixels are 256 times the shades in 1/256, with `more` added, off by less than ½. A shade that all corners share is
-    /// half a unit greater, so that no quotient is a whole number. `None` where that is not sure.
+    /// pixels are 256 times the shades in 1/256, with `more` added, off by less than ½. A shade that all corners share
+    /// is half a unit greater, so that no quotient is a whole number. `None` where this accuracy is not guaranteed.
     ///
     /// The quotient t is below T = 2²⁴. Let ε = 2⁻⁵³, N(k) and D(k) the exact sums at pixel k, N and D their largest
     /// values, which are at the two ends, and R = D over the least D(k), which is at an end too:

@@ -135,7 +135,8 @@ impl AffineLevel {
 /// ```
 ///
 /// with λ the [weights](Weights) of the corners and d their depths. No λ is negative at a covered centre, so a
-/// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than 2⁻¹⁹.
+/// numerator in f64 is off by at most 4 parts in 2⁵³ of 2³¹ · Σ λᵢ·dᵢ, however much of it cancels, and u by less than
+/// 2⁻¹⁹.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::raster) struct PerspectiveTexture {
     weights: Weights,

@@ -2,8 +2,8 @@
 //!
 //! The weight of a corner is twice the area of the part of the triangle opposite it: a whole number of at most 2⁴² in
 //! the triangle. It is linear on the screen; all terms are whole and below 2⁴⁴, so f64 holds them exactly. None is
-//! negative at a covered centre, so in a sum of such weights times values above 0 nothing cancels, and it is right to a
-//! few parts in 2⁵³ however thin the triangle.
+//! negative at a covered centre, so in a sum of such weights times values above 0 nothing cancels, and the sum is
+//! accurate to a few parts in 2⁵³ however thin the triangle.
 
 use super::cover::SortedTriangle;
 

@@ -16,8 +16,8 @@
 //! face hides; a face that no other overlaps needs no depth at all.
 //!
 //! [`GouraudVintage`](Interpolation::GouraudVintage), whose triangles have edges of their own, gets exact coverage here
-//! like all others, with its own [shades](super::vintage) on it, so it alone gives different frames than the depth
-//! buffer.
+//! like all others, with its own [shades](super::vintage). So it alone gives frames that differ from the depth
+//! buffer's.
 //!
 //! | file | what |
 //! |---|---|
@@ -48,7 +48,7 @@ use crate::span::Kernel;
 /// The memory of the scan-line method, which grows as needed. Its contents between two frames do not matter.
 #[derive(Clone, Debug, Default)]
 pub struct Lists {
-    /// The faces that are coming, those that are active, and those that are open.
+    /// The faces yet to come, those that are active, and those that are open.
     keys: [Vec<u64>; 3],
     pairs: Vec<EdgePair>,
 }
@@ -173,10 +173,10 @@ struct Run {
     x1: i32,
 }
 
-/// Sweep along a row, from left to right.
+/// A sweep along a row, from left to right.
 struct Sweep {
     drawn: DrawStats,
-    /// Not yet painted, because the next segment may belong to the same face.
+    /// The run not yet painted, because the next segment may belong to the same face.
     run: Option<Run>,
 }
 

@@ -1,4 +1,4 @@
-//! Nearest of several faces, along a piece of a row.
+//! The nearest of several faces, along a piece of a row.
 //!
 //! Depths are linear along a row before they are truncated to whole units: z, with 24 fraction bits. The truncated
 //! depth d = z >> 24 decides, and at equal depths the order of submission. So face i certainly leads face j at a pixel

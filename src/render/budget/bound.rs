@@ -10,23 +10,23 @@ use crate::light::{ConeBeam, Lights, Reflectance};
 use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
-/// Largest turn of a direction, in radians: larger ones are clamped to it.
+/// The greatest turn of a direction, in radians: larger turns are clamped to it.
 const GREATEST_TURN: f32 = 1e4;
 
 /// Length of the second derivative of a unit vector, relative to its turn squared: 2/√3 (Lemma 5).
 const BEND: f32 = 1.154_701;
 
-/// Bound on the error of f32 arithmetic, relative to a light's strength, in the bound and in the
-/// cosines that enter it.
+/// A bound on the error of f32 arithmetic, relative to a light's strength, in the bound and in the cosines that it is
+/// computed from.
 const ROUNDING: f32 = 2e-5;
 
-/// Spread at which a face's normals may begin to cancel.
+/// The spread from which the normals of a face may cancel.
 const CANCELS: f32 = 0.99;
 
 /// Figures of eight patches that do not depend on the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Shapes {
-    /// Radius of the corners' normals (Lemma 1); no face's is larger.
+    /// The radius of the corners' normals (Lemma 1); no face of the patch has a larger one.
     pub(super) spread: Lanes<f32>,
     /// Radius of the corners' positions.
     pub(super) edge: Lanes<f32>,
@@ -284,7 +284,7 @@ fn put(terms: &mut Terms, lane: usize, term: Term) {
     (errors[lane], ranges[lane], most[lane], least[lane]) = (term.error, term.range, term.most, term.least);
 }
 
-/// The eye, for highlights: their power, the sight of the eye, and how far its direction turns.
+/// The eye, for highlights: their lobe, the eye as seen from the patches, and how far its direction turns.
 struct Eye<D> {
     lobe: Lobe,
     sight: Sight<D>,
@@ -332,7 +332,7 @@ impl Sums {
         let (normals, below) = (self.normals, self.below);
         let facing = patches.facing(directions);
         let [most, least] = weighted.unwrap_or(facing);
-        // Loops, as closures are not inlined eight times.
+        // Loops, because closures would not be inlined eight times.
         let mut bodies = [[0.0; LANES]; 4];
         for lane in 0..LANES {
             put(&mut bodies, lane, body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
@@ -413,9 +413,9 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
 ) -> Bounds {
     let Lights { suns, lamps, eye } = incident.lights;
     let narrow = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32];
-    // Coordinates in f32 are off by up to 2⁻²⁴ of themselves, and their differences by no more than this.
+    // Coordinates in f32 are off by up to 2⁻²⁴ of their magnitude, and their differences by no more than this.
     let blur = |at: [f64; 3]| 5e-7 * at.iter().fold(incident.extent, |most, c| most.max(c.abs() as f32));
-    // Immoderate values get no bound; with moderate ones nothing overflows.
+    // Values that are too large get no bound; with the others nothing overflows.
     if !incident.is_moderate() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }

@@ -1,4 +1,4 @@
-//! Classifies a chunk's faces as linear or not, bounding clusters, and eight faces at a time.
+//! Classifies a chunk's faces as linear or not, by bounds on whole clusters first, then on eight faces at a time.
 
 use super::bound::{Bounds, Incident, Shapes, error_at_best};
 use super::clusters::Clusters;
@@ -50,7 +50,7 @@ fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
 }
 
 impl Faces<'_> {
-    /// Bounds of eight patches of a surface.
+    /// Bounds the error on eight patches of a surface.
     fn bounds<const WHOLE: bool, P: Patches>(
         &self,
         budget: &Budget,
@@ -168,7 +168,7 @@ impl Faces<'_> {
         (faces, shapes)
     }
 
-    /// Bounds of parts of one face: eight of them, with these sizes and bends.
+    /// Bounds the error on parts of one face: eight of them, with these sizes and bends.
     #[inline(never)]
     pub(super) fn bounds_of_parts(
         &self,

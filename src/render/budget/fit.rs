@@ -33,9 +33,9 @@ const PIXELS_A_POINT: f32 = 4.0;
 /// `torus` within 2 takes 1.01, 0.99 and 1.)
 const WORTH_CURVE: f32 = 48.0;
 
-/// The bound of parts is computed if the face's bound, times the square of the smallest part's
-/// size, is at most this fraction of the allowed error: an estimate. (Instructions of a frame
-/// within 1 shade with it: `phong` 0.94, `rgb` 0.92; with 0.5 instead `rgb` 0.97.)
+/// The bound of parts is computed only if it is likely to help: if the face's bound, times the square of the smallest
+/// part's size, is at most this fraction of the allowed error. (Instructions of a frame within 1 shade with it: `phong`
+/// 0.94, `rgb` 0.92; with 0.5 instead `rgb` 0.97.)
 const HOPE: f32 = 0.25;
 
 /// A grid is worth lighting if light deviates between its points by less than this fraction of the
@@ -56,8 +56,8 @@ const NODES: Weights = [
     [0.0, 0.0, 1.0, 0.5, 0.5, 0.0, 0.0, 0.0],
 ];
 
-/// The points that divide each edge into `n`, except for the corners and, as `n` is even, the
-/// middles of the edges; padded to full eights with the first corner.
+/// The points of a grid that divides each edge into `n` parts, except for the corners and, as `n` is even, the middles
+/// of the edges; padded to full eights with the first corner.
 const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     let mut eights = [[[1.0; LANES], [0.0; LANES], [0.0; LANES]]; EIGHTS];
     let (mut at, mut point) = (0, 0);
@@ -260,7 +260,7 @@ impl Faces<'_> {
             (part[lane], bend[lane]) = (share * ratio, (ratio - 1.0) / 4.0 * share);
         }
         let mut on_screen = self.on_screen(face, depths);
-        // Quadratic functions are for additive light.
+        // Light is continued below the horizon only if no light and no material takes light away.
         on_screen.below &= budget.adds;
         // Eight points at a time, and the nodes.
         let pays = |points: &[Weights]| (LANES * (points.len() + 1)) as f32 * PIXELS_A_POINT <= pixels;
@@ -287,9 +287,8 @@ impl Faces<'_> {
         (spacing.map_or(PHONG, |(_, spacing)| FaceShading::PhongEvery(spacing)), None)
     }
 
-    /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes
-    /// through, if it fits. `spare` is the whole allowance, and `left` how much of it remains on
-    /// each grid.
+    /// Tests the quadratic function on grids, from coarse to fine; returns the light that it goes through, if it fits.
+    /// `spare` is the whole allowance, and `left` is what remains of it on each grid.
     fn quadratic(
         &self,
         face: &OnScreen<'_>,

@@ -69,7 +69,7 @@ impl Budget {
         }
     }
 
-    /// Error left for light if a shade is also off by `rounding`, as a fraction of full intensity.
+    /// The error that remains for the light if a shade is also off by `rounding`, as a fraction of full intensity.
     fn spare(&self, rounding: f32) -> f32 {
         (self.allowed - rounding) / 255.0
     }

@@ -47,7 +47,7 @@ fn project_by<S: F32Lanes8, const TESTED: bool>(
     one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, vertices);
 }
 
-/// Eight vertices, with a mark on those that need clipping.
+/// Projects eight vertices, and marks those that need clipping.
 #[inline(always)]
 fn project_eight<S: F32Lanes8>(
     s: S,
@@ -142,7 +142,7 @@ pub(super) fn one_by_one<const TESTED: bool>(
 }
 
 compiled_for_each_level! {
-    /// [`light_suns`](super::light_suns).
+    /// Lights vertices for [`light_suns`](super::light_suns), eight at a time.
     pub(super) fn light_suns[const BOTH: bool][BOTH](
         geometry: &Geometry<'_>,
         materials: &[SurfaceMaterial],
@@ -233,7 +233,7 @@ fn shade<S: F32Lanes8>(s: S, material: &SurfaceMaterial, light: S::F64) -> S::I3
     )
 }
 
-/// [`SurfaceMaterial::shade`].
+/// The shades of these intensities, each as computed by [`SurfaceMaterial::shade`].
 #[inline(always)]
 pub(in crate::render) fn shade_of_intensities<S: F32Lanes8>(s: S, material: &SurfaceMaterial, light: S::F64) -> S::I32 {
     // NaN gives the second argument, 0.

@@ -126,8 +126,8 @@ pub(super) fn light_channels(
     });
 }
 
-/// Passes on the vertices, up to eight of one surface at a time, first as seen from the front and then, with `both`, from
-/// the back: their indices, the side, their surface, and their normals and positions.
+/// Passes on the vertices, up to eight of one surface at a time, first as seen from the front and then, with `both`,
+/// from the back: their indices, the side, their surface, and their normals and positions.
 #[inline(always)]
 fn each_eight(geometry: &Geometry<'_>, both: bool, mut eight: impl FnMut(Range<usize>, usize, usize, &Points)) {
     let mut first = 0;
@@ -161,8 +161,8 @@ pub(super) fn texture_coordinates(geometry: &Geometry<'_>, materials: &[SurfaceM
     }
 }
 
-/// `part` of a texture's `size`, in 16.16. Images repeat; coordinates more than 16,384 texels from their corner are
-/// brought back by whole images.
+/// `part` of a texture's `size`, in 16.16. Images repeat; coordinates more than 16,384 texels from the image's corner
+/// are brought back by whole images.
 fn texels(part: f32, size: u32) -> i32 {
     const FARTHEST: f64 = 16_384.0;
     let size = f64::from(size);
@@ -172,14 +172,14 @@ fn texels(part: f32, size: u32) -> i32 {
     floor(near * 65_536.0 + 0.5)
 }
 
-/// The greatest whole number that is not greater, or the i32 nearest to it; 0 for NaN. `libm::floor` takes twice the
+/// The greatest whole number not above `x`, or the i32 nearest to it; 0 for NaN. `libm::floor` takes twice the
 /// instructions.
 fn floor(x: f64) -> i32 {
     let toward_zero = x as i32;
     toward_zero.saturating_sub(i32::from(f64::from(toward_zero) > x))
 }
 
-/// Coordinates at which an image of the surroundings is mirrored, from the normal in eye space.
+/// Texture coordinates in an environment map, from the normal in eye space.
 #[inline(never)]
 pub(super) fn environment_coordinates(
     geometry: &Geometry<'_>,

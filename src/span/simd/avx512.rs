@@ -27,7 +27,7 @@ static EVEN: [u16; 32] = {
 /// compiler replaces a shuffle that it knows with two or three operations on the shuffle port.
 static UPPER_HALVES: [u32; 16] = [1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31];
 
-/// [`Kernel::fill`](super::super::Kernel::fill).
+/// Fills a row as [`Kernel::fill`](super::super::Kernel::fill) says.
 #[inline]
 pub(crate) fn fill(_: Avx512, row: &mut [u8], shade: u16, step: u16) {
     // SAFETY: the token proves that the processor has AVX-512; the row is that long.

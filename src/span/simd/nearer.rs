@@ -1,12 +1,11 @@
 //! The span with a depth test in AVX2: four pixels per iteration in the shortest spans, eight
 //! in others, and sixteen for shades in spans longer than eight.
 //!
-//! Pixels of an iteration that are not part of the span get depth 0, which is never nearer, so they
-//! are rewritten unchanged: AVX2 has masked stores only for 32 bits, and on some processors they
-//! are slow. So as many pixels and cells as an iteration takes must exist, in whichever row; a span
-//! at the very end of the frame that lacks them is drawn by [`fill_nearer`]. (Four where that is
-//! enough, since bytes just stored are then less often reloaded in other pieces: 38.5 to 36.7 ns
-//! per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
+//! Pixels of an iteration that are not part of the span get depth 0, which is never nearer, so they are rewritten
+//! unchanged: AVX2 has masked stores only for 32 bits, and on some processors they are slow. So as many pixels and
+//! cells as an iteration takes must exist, in whichever row; a span at the very end of the frame that lacks them is
+//! drawn by [`fill_nearer`]. (Where four pixels are enough, an iteration takes four, since bytes just stored are then
+//! less often reloaded in other pieces: 38.5 to 36.7 ns per face with 8 pixels per triangle, 13.9 to 13.5 with 0.6.)
 
 use core::arch::x86_64::*;
 
@@ -27,8 +26,8 @@ pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &
     unsafe { fill(pixels, cells, spans, |_, _| Own::Linear) }
 }
 
-/// Fills every span of a list where it is nearer, with shades in 16.16: `shades` gives the first one and the step. Returns the
-/// number of pixels written.
+/// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
+/// Returns the number of pixels written.
 pub(crate) fn fill_spans_16_16(
     _: Avx2,
     pixels: &mut [u8],
@@ -64,8 +63,8 @@ enum Own {
 
 /// Fills spans in order. Returns the number of pixels written.
 ///
-/// A span that does not lie inside the pixels and cells is not drawn. (One function fills a whole
-/// list: one for each span, which is too large to be inlined in the loop, is a quarter slower.)
+/// A span that does not lie inside the pixels and cells is not drawn. (This one function fills a whole list: a function
+/// that fills one span would be too large to be inlined in the loop, and is a quarter slower.)
 #[target_feature(enable = "avx2")]
 fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
     // Pixels of all iterations, four for each span and these; and per lane those that were not written, as a negative
@@ -74,7 +73,7 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usi
     let mut stayed = _mm256_setzero_si256();
     let (mut number, count) = (0, spans.count());
     while number < count {
-        // Spans are usually short: a loop of their own has registers for all its values. These are read behind the
+        // Spans are usually short. A separate loop for them has registers for all its values, which are read after the
         // checks of bounds, so that each is broadcast from memory by one instruction.
         while number < count {
             let length = spans.span(number).length as usize;
@@ -200,7 +199,7 @@ impl Depths {
     }
 }
 
-/// −1 where a depth is not greater than its cell; the cells store the greater one.
+/// −1 where a depth is not greater than its cell; greater depths are stored in the cells.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn stay(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
@@ -212,7 +211,7 @@ fn stay(cells: &mut [u32; EIGHT], depths: __m256i) -> __m256i {
     _mm256_cmpeq_epi32(before, after)
 }
 
-/// Packs lanes of 32 bits into sixteen numbers of 16 bits: 0 to 3 and 8 to 11, 4 to 7 and 12 to 15.
+/// Packs lanes of 32 bits into sixteen numbers of 16 bits, in the order 0 to 3, 8 to 11, 4 to 7, 12 to 15.
 #[inline]
 #[target_feature(enable = "avx2")]
 fn halves([first, second]: [__m256i; 2]) -> __m256i {

@@ -1,5 +1,5 @@
-//! Sixteen pixels at a time with vectors of 128 bits, for ARM and WebAssembly: the kernel of `sse2`, in the operations
-//! of each.
+//! Sixteen pixels at a time with 128-bit vectors, for ARM and WebAssembly: the kernel of `sse2`, written with the
+//! operations of each.
 
 /// Even and odd shades of sixteen pixels, as described in the module `simd`.
 pub(super) trait Block: Copy {

@@ -67,7 +67,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     }
 }
 
-/// [`show_along`] under the masks of [`depth_test`](super::depth_test), one for each block.
+/// Shows texels as [`show_along`] does, under the masks of [`depth_test`](crate::span::depth_test), one for each block.
 #[inline(always)]
 pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     s: S,
@@ -104,7 +104,7 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     }
 }
 
-/// Shows texels in eight pixels, except for those that the mask lets stay.
+/// Shows texels in eight pixels, except for those that the mask leaves unchanged.
 #[inline(always)]
 pub(crate) fn show_block<S: Lanes8, T: Tint>(
     s: S,
@@ -146,8 +146,8 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
     }
 }
 
-/// Shows texels in two spans of up to four pixels, at these indices of the frame or buffer, except for those that the
-/// mask lets stay. `places` are the indices of the texels, four for each span.
+/// Shows texels in two spans of up to four pixels, at these indices of the frame or buffer, except for the pixels that
+/// the mask leaves unchanged. `places` are the indices of the texels, four for each span.
 #[inline(always)]
 pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     s: S,
@@ -181,13 +181,13 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     }
 }
 
-/// Texel `k` of eight as it is shown. `last` is the index of the last texel.
+/// Texel `k` of eight, as it is shown. `last` is the index of the last texel.
 #[inline(always)]
 fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
     tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
 }
 
-/// Pixels written at once if no more are left.
+/// The number of pixels that are written at once if no more are left.
 pub(crate) const FOUR: usize = LANES / 2;
 
 /// Indices of texels, eight at a time.
@@ -224,7 +224,7 @@ impl<S: Lanes8> PlaceLanes<S> {
         Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1), bits }
     }
 
-    /// [`Texels::place`].
+    /// Computes [`Texels::place`] for these coordinates.
     #[inline(always)]
     pub(super) fn at_coordinates(self, u: S::I32, v: S::I32) -> S::I32 {
         self.at(u, self.s.mul_i32(v, self.width))
@@ -236,7 +236,7 @@ impl<S: Lanes8> PlaceLanes<S> {
         self.s.splat_i32((1 << self.bits) - 1)
     }
 
-    /// [`Texels::place`] of u, and of v times the width: the masks clear all bits that this loses.
+    /// Computes [`Texels::place`] for u, and for v times the width, whose lost bits the masks would clear anyway.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
@@ -247,7 +247,7 @@ impl<S: Lanes8> PlaceLanes<S> {
 /// Indices of texels along a line, as in [`fill_affine`](super::fill_affine).
 pub(crate) struct AffineAlong<S: Lanes8> {
     places: PlaceLanes<S>,
-    /// u, and v times the width, of the next eight texels; and their change to the eight after these.
+    /// u, and v times the width, of the next eight texels; and their change from these to the eight after them.
     at: [S::I32; 2],
     step: [S::I32; 2],
 }
@@ -294,12 +294,12 @@ impl<S: Lanes8> PlacesAlong<S> for AffineAlong<S> {
 /// Indices of the texels of up to 64 pixels, eight at a time.
 pub(crate) type StoredPlaces = [[i32; LANES]; 8];
 
-/// Indices that a function computes all at once when the first are asked for.
+/// Indices that a function computes all at once when the first of them are requested.
 pub(crate) struct StoredAlong<S, F> {
     s: S,
     fill: F,
     places: StoredPlaces,
-    /// Number of the next eight.
+    /// The index of the next eight.
     next: usize,
     is_filled: bool,
 }

@@ -72,13 +72,13 @@ impl<'a> Texels<'a> {
         Ok(Self { bytes, ubits, vbits })
     }
 
-    /// Texels in a row, 1 to 256.
+    /// The number of texels in a row, 1 to 256.
     #[must_use]
     pub const fn width(self) -> usize {
         1 << self.ubits
     }
 
-    /// Rows, 1 to 256.
+    /// The number of rows, 1 to 256.
     #[must_use]
     pub const fn height(self) -> usize {
         1 << self.vbits
@@ -91,15 +91,15 @@ impl<'a> Texels<'a> {
         self.bytes[self.place(u, v)]
     }
 
-    /// Index of the texel, below the length. The compiler sees that from the last mask, if it knows that the bytes are
-    /// not empty, and omits the bounds check (with everything in usize; with a u32 it does not).
+    /// The index of the texel, below the length. If the compiler knows that the bytes are not empty, it sees this bound
+    /// from the last mask, and omits the bounds check (with everything in usize; with a u32 it does not).
     #[inline]
     pub(crate) fn place(self, u: u32, v: u32) -> usize {
         let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
         // The masks clear whatever a narrow usize cuts off.
         let column = (u >> 16) as usize & columns;
-        // Shifted once instead of down and up.
+        // Shifted once, rather than down and up again.
         let row = (v >> (16 - self.ubits)) as usize & (last & !columns);
         (row | column) & last
     }
@@ -109,7 +109,7 @@ impl<'a> Texels<'a> {
 /// the level before it, but at least one of each; the last is a single texel. Level 0 is the texture itself.
 #[derive(Clone, Copy, Debug)]
 pub struct Levels<'a> {
-    /// Level after level.
+    /// The bytes of one level after another.
     bytes: &'a [u8],
     ubits: u32,
     vbits: u32,
@@ -155,7 +155,7 @@ impl<'a> Levels<'a> {
         Self::deepest(self.ubits, self.vbits)
     }
 
-    /// The texels of a level from 1 to the last. A higher level gives the last one, level 0 `None`.
+    /// The texels of a level from 1 to the last. For a higher level it returns the last one, for level 0 `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
         // At most 7.
@@ -178,7 +178,7 @@ impl<'a> Levels<'a> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum TexelsError {
-    /// Wider or higher than 256 texels.
+    /// The texture is wider or higher than 256 texels.
     Bits {
         /// The logarithm of the width, as given.
         ubits: u32,
@@ -187,9 +187,9 @@ pub enum TexelsError {
     },
     /// The bytes are too few or too many.
     Length {
-        /// Bytes given.
+        /// The number of bytes given.
         is: usize,
-        /// Texels of the texture.
+        /// The number of texels of the texture.
         should: usize,
     },
 }

@@ -19,8 +19,8 @@ use crate::simd::{BASELINE, F32Lanes8, Lanes8};
 ///
 /// 1. Over a piece of the row let N be the largest |n| of a numerator and D the largest divisor. All are linear, so N
 ///    and D are at the piece's ends, and |k·dn| ≤ 2N.
-/// 2. In the numerator n + k·dn in f64, n is rounded (εN), dn is (2εN for k of them), their product is (2εN), and the
-///    sum is (εN). So it is off by 6εN, and the divisor by 6εD in the same way.
+/// 2. In the numerator n + k·dn in f64, the errors are those of rounding n (εN), dn (2εN for k of them), their product
+///    (2εN), and the sum (εN). So it is off by 6εN, and the divisor by 6εD in the same way.
 #[cfg(feature = "internals")]
 pub fn fill_perspective(
     row: &mut [u8],
@@ -30,12 +30,12 @@ pub fn fill_perspective(
     d: i128,
     dd: i128,
 ) {
-    // Modulo 2³²: the mask keeps fewer bits.
+    // Modulo 2³²: the mask keeps fewer bits than that.
     let exact_place = |[u, v]: [i128; 2], divisor: i128| {
         texels.place(floor_of_wide(u, divisor.max(1)) as u32, floor_of_wide(v, divisor.max(1)) as u32)
     };
     let ([u, v], [du, dv]) = (numerators, steps);
-    // At most a row of a frame.
+    // No more pixels than a row of a frame has.
     let advanced = |from: i128, step: i128, pixels: usize| from.wrapping_add(step.wrapping_mul(pixels as i128));
     for (number, piece) in row.chunks_mut(PIECE).enumerate() {
         let first = number * PIECE;
@@ -75,9 +75,8 @@ impl PerspectiveSums<f64> {
     const NONE: Self = Self { numerators: [[0.0; 2]; 2], divisors: [0.0; 2], base: [0; 2] };
 }
 
-/// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by
-/// [`Quotients`]. Where a quotient cannot decide, `exact` stores the indices of
-/// eight texels, from the one with this number on.
+/// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by [`Quotients`]. Where a
+/// quotient cannot decide, `exact` stores the indices of eight texels, from the one with the given number on.
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
     places: PlaceLanes<S>,
@@ -94,7 +93,7 @@ pub(crate) fn perspective_along<S: Lanes8>(
     PerspectiveAlong { places: quotients.places, quotients, numbers, first: range.0, exact }
 }
 
-/// [`perspective_along`] by quotients in f32, where [`fits_singles`] allows them.
+/// Computes indices as [`perspective_along`] does, by quotients in f32, where [`fits_singles`] allows them.
 #[inline(always)]
 pub(crate) fn singles_along<S: F32Lanes8>(
     places: PlaceLanes<S>,
@@ -134,7 +133,7 @@ pub(crate) fn singles_pair<S: F32Lanes8>(
     (quotients.places.at_coordinates(u, v), is_unsure)
 }
 
-/// Position along a span of [`perspective_along`].
+/// A position along a span of [`perspective_along`].
 struct PerspectiveAlong<S: Lanes8, Q: QuotientsAlong<S>, E> {
     places: PlaceLanes<S>,
     quotients: Q,
@@ -181,13 +180,13 @@ trait QuotientsAlong<S: Lanes8> {
     fn next(&self, s: S, numbers: Self::Numbers) -> Self::Numbers;
 }
 
-/// Quotients in f64, for any level: its texels begin at fewer of the integers.
+/// Quotients in f64, for any level: in higher levels, fewer integers begin a texel.
 ///
 /// Only the integer texel counts. Let q be a quotient, |q| ≤ 2³², and t the integer nearest to its estimate. If |t − q|
 /// < 1 and no texel begins at t (t mod 2¹⁶ ≠ 0), then q lies in the same texel as t: all bounds of texels are integers
-/// other than t, so at least 1 away. So the estimate may be off by less than ½. It is for the planes of the raster, which
-/// are off by less than 0.2; and it is if numerators are off by at most 12 parts in 2⁵³ of 2³²·D and divisors by 12 parts
-/// of D, D being the row's largest divisor:
+/// other than t, so at least 1 away. So the estimate may be off by less than ½. This holds for the planes of the
+/// raster, which are off by less than 0.2. It also holds if numerators are off by at most 12 parts in 2⁵³ of 2³²·D and
+/// divisors by 12 parts of D, D being the row's largest divisor:
 ///
 /// 1. Let R be D over the smallest divisor, ε = 2⁻⁵³.
 /// 2. The quotient is off by 2³²·12εR for the numerator, the same for the divisor, and 2ε of itself for the reciprocal
@@ -254,21 +253,21 @@ impl<S: Lanes8> QuotientsAlong<S> for Quotients<S> {
 /// How far a quotient in f32 may be off, in 1/65,536 of a texel.
 const SINGLES_MARGIN: i32 = 16;
 
-/// Returns which triangles allow quotients in f32: given, in 1/65,536 of a texel, the greatest difference between their
-/// coordinates, the first of which lies in the texel at the base; and the least and the greatest depth.
+/// Returns which triangles allow quotients in f32. It is given, in 1/65,536 of a texel, the greatest difference between
+/// their coordinates, the first of which lies in the texel at the base; and the least and the greatest depth.
 ///
-/// With f32 k·dn + n and k·dd + d are summed, divided, and rounded to an integer t. Let ε = 2⁻²⁴, the error of one
+/// With f32, k·dn + n and k·dd + d are summed, divided, and rounded to an integer t. Let ε = 2⁻²⁴, the error of one
 /// rounding, Q the greatest quotient from the base on, D the row's largest divisor, R the ratio of D to the smallest:
 ///
-/// 1. No weight of a corner is negative at a covered centre, so R is at most the ratio of the depths, and a numerator at
-///    most Q·D.
-/// 2. In the divisor d is rounded (εD), dd is (|k·dd| ≤ D: εD), their product is (εD), and the sum is (εD): 4εD. In the
-///    numerator |k·dn| ≤ 2Q·D, so the same steps make 6εQD.
+/// 1. No weight of a corner is negative at a covered centre, so R is at most the ratio of the depths, and a numerator
+///    at most Q·D.
+/// 2. In the divisor, the errors are those of rounding d (εD), dd (|k·dd| ≤ D: εD), their product (εD), and the sum
+///    (εD): 4εD. In the numerator |k·dn| ≤ 2Q·D, so the same steps make 6εQD.
 /// 3. So the ratio is off by εQ·(6 + 4)R, another 2εQ for the reciprocal and the product, and t by ½. The sums in f64
 ///    add less than 0.2, and what is neglected here is less than εQ·(R + 1), since R < 400.
 ///
-/// Where Q·(11R + 3) ≤ 15·2²⁴ that is less than 16, the margin. Then a coordinate lies in the same texel, of any level, as
-/// t + 16 if the fraction of t + 16 is at least 32.
+/// Where Q·(11R + 3) ≤ 15·2²⁴ that is less than 16, the margin. Then a coordinate lies in the same texel, of any level,
+/// as t + 16 if the fraction of t + 16 is at least 32.
 #[inline(always)]
 pub(crate) fn fits_singles<S: Lanes8>(s: S, range: S::F64, [least, greatest]: [S::F64; 2]) -> S::Mask {
     let texel = s.splat_f64(65_536.0);

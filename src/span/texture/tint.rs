@@ -10,7 +10,7 @@ pub(crate) struct SpanValues {
     pub(crate) paint: u32,
     /// The density of fog, if there is any.
     pub(crate) fog: u32,
-    /// Pixels at the beginning that are skipped.
+    /// The number of pixels skipped at the beginning.
     pub(crate) skipped: u32,
 }
 
@@ -20,7 +20,7 @@ pub(crate) trait Tint: Copy {
     const HAS_FOG: bool = false;
     /// True if the current bytes of pixels are read.
     const READS_PIXELS: bool = false;
-    /// State that changes along a span.
+    /// The state that changes along a span.
     type Along<S: Lanes8>: Copy;
     /// Table rows of eight pixels.
     type Rows: Copy;
@@ -37,7 +37,7 @@ pub(crate) type Ramp8<S> = [<S as Lanes8>::I32; 2];
 
 /// The pixels of one span or two whose values are computed eight at a time.
 pub(crate) trait Ramps<S: Lanes8>: Copy {
-    /// One of their values, which `of` gives with the step in the upper half.
+    /// One of their values: `of` returns its start, with the step in the upper half.
     fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S>;
 }
 
@@ -53,7 +53,7 @@ impl<S: Lanes8> Ramps<S> for SpanValues {
     }
 }
 
-/// Four pixels of each of two spans, with their numbers in these. None follow them.
+/// Four pixels of each of two spans, with the pixels' numbers in their spans. No pixels follow these.
 #[derive(Clone, Copy)]
 pub(crate) struct PairValues<S: Lanes8>(pub(crate) [SpanValues; 2], pub(crate) S::I32);
 
@@ -118,7 +118,7 @@ impl Tint for Painted<'_> {
     }
 }
 
-/// The shades of the span alone, whatever the texels.
+/// The shades of the span alone; texels are ignored.
 #[derive(Clone, Copy)]
 pub(crate) struct Untextured;
 
