@@ -1,4 +1,4 @@
-//! Tells the program which compiler made it, and how: `mode13h cost` names both beside the times it takes.
+//! Tells the program which compiler built it, and how: `mode13h cost` states both beside its timings.
 
 use std::env;
 use std::process::Command;

@@ -1,5 +1,5 @@
-//! A chip's frame: a lit pyramid in integers alone, four rows in memory at a time, as a PGM picture on standard output.
-//! What it calls of the engine needs neither `std` nor an allocator nor a float.
+//! A frame as a chip would draw it: a lit pyramid in integers alone, four rows in memory at a time, as a PGM picture on
+//! standard output. The parts of the engine used here need no `std`, no allocator and no floats.
 //!
 //!     cargo run --release --no-default-features --example chip > pyramid.pgm
 

@@ -1,8 +1,8 @@
-//! A plasma of palette and bytes alone: no scene, no raster. The bytes are drawn once; what moves is
-//! the DAC, turned by one entry at each vertical retrace.
+//! A plasma from palette and bytes alone: no scene, no rasterizer. The bytes are drawn once; only the DAC moves,
+//! rotated by one entry at each vertical retrace.
 //!
-//! `cargo run --release --example plasma -- [OUT.png] [RETRACES]` writes how it looks after that many
-//! retraces (70 a second), by default 100.
+//! `cargo run --release --example plasma -- [OUT.png] [RETRACES]` saves the picture after that many retraces (70 a
+//! second), by default 100.
 
 use mode13h::export;
 use mode13h::palette::gradient::{Stop, fill};
@@ -31,7 +31,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     Ok(())
 }
 
-/// Colours that end where they begin, through the ports as in 1994: index 0, then 768 values.
+/// Loads colours that end where they begin, through the ports as in 1994: index 0, then 768 values.
 fn load_colors(vga: &mut Vga) {
     let mut colors = [Rgb::BLACK; 256];
     let keys = [
@@ -64,8 +64,7 @@ fn draw(pixels: &mut [u8]) {
     }
 }
 
-/// 127 · sin of an angle of which 256 are a turn, by Bhaskara's fraction of the seventh century:
-/// within 1.2 of that.
+/// 127 · sin of an angle in 1/256 of a turn, by Bhaskara's fraction of the seventh century; off by at most 1.2.
 fn sine(angle: i32) -> i32 {
     let half = angle & 127;
     let p = half * (128 - half);

@@ -1,4 +1,4 @@
-//! A loader of one's own: heights in an ASCII PGM picture become a mesh with four surfaces, drawn in `terrain.png`.
+//! A loader of your own: heights in an ASCII PGM picture become a mesh with four surfaces, drawn in `terrain.png`.
 //!
 //!     cargo run --release --example terrain -- [HEIGHTS.pgm]
 
@@ -13,10 +13,10 @@ use mode13h::vga::Vga;
 
 /// Water, sand, grass and snow: each a quarter of the palette, from dark to this colour.
 const COLORS: [[u8; 3]; 4] = [[40, 90, 200], [210, 190, 120], [90, 160, 60], [250, 250, 255]];
-/// Heights up to which the first three reach.
+/// The heights up to which the first three reach.
 const BOUNDS: [f32; 3] = [0.3, 0.4, 0.75];
 
-/// Columns, and all heights from 0 to 1, row by row; `None` for what is no such picture.
+/// The number of columns, and all heights from 0 to 1, row by row; `None` if the text is not such a picture.
 fn heights(text: &str) -> Option<(usize, Vec<f32>)> {
     let words: Vec<&str> = text.lines().filter(|line| !line.starts_with('#')).flat_map(str::split_whitespace).collect();
     let ["P2", columns, rows, most, heights @ ..] = &words[..] else { return None };

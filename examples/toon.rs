@@ -19,7 +19,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         _ => 1.0,
     });
     scene[teapot].materials[0].response = Some(tones);
-    // Light is taken at every pixel; by default it is taken at the vertices, and linear between them.
+    // Light is computed at every pixel; by default it is computed at the vertices and interpolated linearly.
     scene.settings.accuracy = Some(Shading::Phong.into());
     let mut vga = Vga::new();
     println!("toon.png: {}", Renderer::new().draw(&scene, &mut vga)?);

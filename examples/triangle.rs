@@ -1,4 +1,4 @@
-//! One shaded triangle, by the raster alone: no scene, no machine, no allocator. Printed as text.
+//! One shaded triangle by the rasterizer alone, printed as text: no scene, no VGA, no allocator.
 //!
 //!     cargo run --example triangle --no-default-features
 

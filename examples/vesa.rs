@@ -23,7 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut scene = Scene::new();
     let teapot = scene.show(shapes::teapot(8));
     scene.palette = Some(fire.clone());
-    // Five tones, at every pixel; by default light is taken at the vertices, and is linear between them.
+    // Five tones, at every pixel; by default light is computed at the vertices and interpolated linearly.
     scene[teapot].materials[0].response = Some(LightResponse::new(|intensity| (intensity * 5.0).ceil() / 5.0));
     scene.settings.accuracy = Some(Shading::Phong.into());
 

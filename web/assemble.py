@@ -24,7 +24,7 @@ def read(*paths):
 
 
 def minified(text, loader):
-    """A script or a style sheet without what only people read."""
+    """A script or a style sheet without comments and unneeded blanks."""
     command = [web / "node_modules/.bin/esbuild", "--minify", f"--loader={loader}"]
     return subprocess.run(command, input=text, check=True, capture_output=True, text=True).stdout.strip()
 
@@ -54,7 +54,7 @@ def data_address(picture):
 
 
 def address_tags(address):
-    """What a preview of a link needs to know of where the page stands."""
+    """The data about the page's address that link previews need."""
     folder = address.rsplit("/", 1)[0]
     tags = {"og:url": address, "og:image": f"{folder}/page.png"}
     return "\n".join(f'<meta property="{name}" content="{html.escape(value)}">' for name, value in tags.items())
@@ -67,7 +67,7 @@ packed = {
     "wasm": module.read_bytes(),
     "worker": bundle(page / "worker.js").encode(),
     "page": bundle(page / "page.js").encode(),
-    # What the first screen does not need.
+    # The parts that the first screen does not need.
     "style": minified(read(shared / "figures.css", text / "text.css"), "css").encode(),
     "text": read(text / "text.html").encode(),
 }

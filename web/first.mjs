@@ -1,6 +1,6 @@
-// The page's first picture, drawn ahead by its own engine: first.mjs MODULE.wasm FOLDER
+// The page's first picture, drawn at build time by its own engine: first.mjs MODULE.wasm FOLDER
 //
-// It stands under the canvas until the engine is there: left.png and right.png, of which the divider shows a half each.
+// It shows under the canvas until the engine is ready: left.png and right.png, half of each on its side of the divider.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { Engine } from "./page/engine.js";

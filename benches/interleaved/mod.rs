@@ -9,7 +9,7 @@ pub(crate) fn is_bench() -> bool {
     std::env::args().any(|argument| argument == "--bench")
 }
 
-/// The times of `candidates`, in seconds of the wall clock, one per round each: how long `run` takes with the candidate's
+/// The times of `candidates` in wall-clock seconds, one per round each: how long `run` takes with the candidate's
 /// index.
 pub(crate) fn times(candidates: usize, rounds: usize, mut run: impl FnMut(usize)) -> Vec<Vec<f64>> {
     times_by(candidates, rounds, |_, candidate| {

@@ -1,4 +1,4 @@
-//! The time that a thread has run, where the system counts it: other programs do not add to that.
+//! The CPU time of a thread, where the system counts it: other programs do not add to it.
 
 use std::time::Duration;
 

@@ -1,4 +1,4 @@
-//! Lists of Gouraud triangles: through the C door, and by `Raster::triangles` from the same vertices and indices.
+//! Lists of Gouraud triangles: through the C interface, and by `Raster::triangles` from the same vertices and indices.
 //!
 //!     cargo bench -p mode13h-capi --bench lists
 
@@ -54,7 +54,7 @@ fn depth(corner: &Corner) -> u32 {
     (f64::from(corner.depth) * 1_073_741_824.0 + 0.5) as u32
 }
 
-/// The least time of one call.
+/// Keeps the shortest time of one call.
 fn time(best: &mut f64, call: impl FnOnce()) {
     let then = Instant::now();
     call();
@@ -81,7 +81,7 @@ fn main() {
             let mut best = [f64::MAX; 4];
             let mut target = std::mem::MaybeUninit::uninit();
             for _ in 0..400 {
-                // By Rust, from the same vertices: each is made once, and triangles of them.
+                // By Rust, from the same vertices: each is converted once, then the triangles are built from them.
                 depths.fill(0);
                 time(&mut best[0], || {
                     let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
@@ -106,7 +106,7 @@ fn main() {
                         ..Mesh::NONE
                     };
                     let material = Material { shading: 1, ..Material::NONE };
-                    // SAFETY: all of it is there.
+                    // SAFETY: the structs are valid, and so is the memory they name.
                     unsafe {
                         m13_target_init(target.as_mut_ptr(), pixels.as_mut_ptr().cast(), 64_000, 320, 200, 320);
                         if has_depth {

@@ -1,4 +1,4 @@
-/* Allegro 4's polygon3d and a function that takes its place: a picture of each beside the other, and their times.
+/* Allegro 4's polygon3d and a function that takes its place: their pictures side by side, and their times.
  *     cc allegro4.c -lmode13h `allegro-config --libs` */
 #include <allegro.h>
 #include <math.h>
@@ -16,7 +16,7 @@ static struct { fixed x, y, u, v, shade; } list[4096];
 static uint32_t listed;
 static struct { BITMAP *bitmap, *texture; int type; } of;
 
-/* Draws what was collected. A program calls it before it shows or reads the bitmap. */
+/* Draws the collected triangles. A program calls it before it shows or reads the bitmap. */
 static void flush(void)
 {
     m13_target target;
@@ -38,7 +38,7 @@ static void flush(void)
     listed = 0;
 }
 
-/* Takes the place of polygon3d: Allegro's types, corners and bitmaps. u, v are 16.16, c is a shade of 0 to 255. */
+/* Replaces polygon3d: Allegro's types, corners and bitmaps. u, v are 16.16, c is a shade of 0 to 255. */
 static void m13_polygon3d(BITMAP *bitmap, int type, BITMAP *texture, int count, V3D *corners[])
 {
     int i, k;

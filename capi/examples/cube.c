@@ -8,7 +8,7 @@
 
 enum { WIDTH = 320, HEIGHT = 200 };
 
-/* A corner as this program has it: what m13_draw reads stands where `layout` says. */
+/* A corner in this program's own format; `layout` tells m13_draw where to find the numbers it reads. */
 struct corner {
     float shade;
     float x, y, w; /* x / w and y / w are pixels */

@@ -1,7 +1,7 @@
 /* A textured, lit torus on a 386 with a VGA, by integers alone:
  *     capi/build --target i386
  *     machines/dos/link capi/examples/dos.c target/c/i386/libmode13h.a -I target/c/i386 -o TORUS.EXE
- * It turns until you press a key. TORUS.EXE 20 writes frame 20 to FRAME.BIN, as this file does on a machine of today. */
+ * It turns until you press a key. TORUS.EXE 20 writes frame 20 to FRAME.BIN, as this file does on a modern machine. */
 #include "mode13h.h"
 #ifdef DOS
 #include "dos.h"
@@ -24,7 +24,7 @@ static struct world { /* in extended memory */
 } *world;
 
 static int32_t sines[256];
-static int32_t sine(int angle) { return sines[angle & 255]; } /* of 256ths of a circle */
+static int32_t sine(int angle) { return sines[angle & 255]; } /* the angle is in 256ths of a circle */
 static int32_t cosine(int angle) { return sine(angle + 64); }
 static int32_t times(int32_t a, int32_t b) { return (int32_t)((int64_t)a * b >> 16); }
 

@@ -1,4 +1,4 @@
-/* A loop as ports of 1997 have it, beside m13_draw: holes, doubles and time. cc replace.c -lmode13h -lm
+/* A triangle loop of 1997 beside m13_draw: holes, pixels drawn twice, and time. cc replace.c -lmode13h -lm
  * The loop sums float slopes, includes both ends of each row, and clamps each shade. */
 #include <math.h>
 #include <stdint.h>
@@ -107,7 +107,7 @@ int main(void)
     for (then = clock(), k = 0; k < ROUNDS; k++)
         m13_draw(&frame, &mesh, &material, NULL, NULL);
     then = clock() - then;
-    for (i = 0; i < 65536; i++) /* counted by a blend: what is there, and one more */
+    for (i = 0; i < 65536; i++) /* counted by a blend: the frame's index plus one */
         one_more[i] = (uint8_t)((i & 255) + 1);
     frame.pixels = memset(hits, 0, sizeof hits);
     material.blend_table = one_more;

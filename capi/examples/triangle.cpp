@@ -1,4 +1,4 @@
-// A textured triangle by the header for C++: c++ -std=c++20 triangle.cpp -lmode13h
+// A textured triangle with the C++ header: c++ -std=c++20 triangle.cpp -lmode13h
 #include <cstdio>
 #include <vector>
 

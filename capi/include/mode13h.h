@@ -3,7 +3,7 @@
  * A frame is an array of bytes, each the index of one of 256 colours. This library draws flat, shaded, textured, fogged and
  * translucent triangles into it, with a depth buffer if you like. A pixel is drawn if and only if its centre lies inside the
  * triangle, or on a top or left edge: two triangles that share an edge leave no hole and draw no pixel twice. Shades never
- * leave the range of the three corners. So nothing has to be clamped, padded or drawn twice over.
+ * leave the range of the three corners. So nothing has to be clamped, padded or drawn twice.
  *
  *     static uint8_t pixels[320 * 200];
  *     m13_target frame;
@@ -13,19 +13,19 @@
  *     m13_clear(&frame, 0);
  *     m13_triangle(&frame, corners, M13_GOURAUD, 0);
  *
- * The library allocates nothing, and keeps nothing between calls but in memory that you give it. Of the C library it calls
- * memcpy, memmove, memset and memcmp alone; the build that chooses the best code for the processor when it runs is made with
+ * The library allocates nothing, and keeps state between calls only in memory that you give it. Of the C library it calls
+ * only memcpy, memmove, memset and memcmp; the build that chooses the best code for the processor at run time includes
  * Rust's standard library, and links libc. Threads may draw at the same time into different frames (or bands of one frame),
- * each with a context of its own. On a PC a call needs up to 52 kB of stack, and 76 kB with effects; on a 386 20 kB, and
- * 64 kB. As WebAssembly it needs 96 kB, more than linkers give: -z stack-size=131072.
+ * each with its own context. On a PC a call needs up to 52 kB of stack, 76 kB with effects; on a 386 20 kB and 64 kB. As
+ * WebAssembly it needs 96 kB, more than linkers provide by default: -z stack-size=131072.
  *
- * ERRORS. Functions that return int return M13_OK or a code below 0; m13_message has its words. A call that returns a code
+ * ERRORS. Functions that return int return M13_OK or a code below 0; m13_message describes it. A call that returns a code
  * has written nothing, with one exception: M13_VERTEX says that some triangles were left out, and the others drawn. A null
- * pointer, a length, a pitch, an index or a number that is wrong gives a code. Lengths that claim more memory than there is
- * cannot be seen.
+ * pointer or a wrong length, pitch, index or number gives a code. Lengths that claim more memory than there is cannot be
+ * detected.
  *
- * STRUCTS have their size as their first member, and a function m13_..._init that sets it, and all else to something
- * harmless. Call it first; then set what you need. Later versions may append members.
+ * STRUCTS have their size as their first member, and a function m13_..._init that sets it and gives all other members
+ * harmless values. Call it first; then set what you need. Later versions may append members.
  *
  * COORDINATES. x runs to the right and y down, in pixels. The top left pixel covers 0 to 1, so its centre is at (0.5, 0.5).
  * Coordinates are rounded to the nearest 1/256 pixel.
@@ -43,9 +43,9 @@
  *     fog               0 (none) to 255     the same
  *     slope             0 to 255            the same
  *
- * Greater depths are nearer, and 0 is as far as can be. If w is the distance along the view axis, depth is near / w: it is
- * linear on the screen, as a depth buffer needs it. Shades, fog and slopes beyond their range are cut off there; a depth
- * beyond 0 to 1, and a number that is not finite, is refused.
+ * Greater depths are nearer, and 0 is as far away as possible. If w is the distance along the view axis, depth is near / w,
+ * which is linear on the screen, as a depth buffer needs it. Shades, fog and slopes beyond their range are clamped; a depth
+ * outside 0 to 1, or a number that is not finite, is rejected.
  *
  * License: MIT or Apache-2.0. */
 #ifndef MODE13H_H
@@ -85,20 +85,20 @@ uint32_t m13_version(void);
 #define M13_NAME (-16)        /* there is no palette of this name */
 #define M13_UNSUPPORTED (-17) /* this library was built without effects */
 
-/* The words of a code, in English. Never null. */
+/* The message of a code, in English. Never null. */
 const char *m13_message(int code);
 
-/* The name of the code that fills spans on this processor, such as "avx2". All of them draw the same bytes. */
+/* The name of the kernel that fills spans on this processor, such as "avx2". All kernels draw the same bytes. */
 const char *m13_kernel(void);
 
 /* ---- Frames ---------------------------------------------------------------------------------------------------------- */
 
-/* What is drawn into. It is checked at each call, and may be copied and changed as you like. */
+/* The frame to draw into. It is checked at each call, and may be copied and changed as you like. */
 typedef struct m13_target {
     uint32_t size;
     uint32_t width, height;                      /* of the whole frame, 1 to 4,096 */
     uint32_t first_row, rows;                    /* the rows that `pixels` holds */
-    uint32_t clip_x0, clip_y0, clip_x1, clip_y1; /* x0 <= x < x1, y0 <= y < y1; what lies outside the frame is ignored */
+    uint32_t clip_x0, clip_y0, clip_x1, clip_y1; /* x0 <= x < x1, y0 <= y < y1; anything outside the frame is ignored */
     uint32_t depth_bits;                         /* 0 (no depth buffer), 16 or 32 */
     uint8_t *pixels;                             /* the first pixel of `first_row` */
     size_t pixel_bytes;                          /* at least pitch * (rows - 1) + width */
@@ -110,18 +110,18 @@ typedef struct m13_target {
 /* A whole frame without a depth buffer. For rows that run upwards draw into a frame that is mirrored. */
 int m13_target_init(m13_target *target, void *pixels, size_t bytes, uint32_t width, uint32_t height, size_t pitch);
 
-/* Gives a target a depth buffer of 16 or 32 bits, aligned to its values; with 0 bits takes it away. Sixteen bits hold the
- * upper 16 of the 30 bits of a float's depth, rounded up. The buffer is not cleared. */
+/* Gives a target a depth buffer of 16 or 32 bits, aligned to its values; 0 bits removes it. Sixteen bits hold the upper 16
+ * of the 30 bits of a float's depth, rounded up. The buffer is not cleared. */
 int m13_target_depth(m13_target *target, void *depth, size_t bytes, uint32_t bits);
 
-/* Draws only where x0 <= x < x1 and y0 <= y < y1. Bytes inside are the same as without. */
+/* Draws only where x0 <= x < x1 and y0 <= y < y1. Bytes inside are the same as without clipping. */
 int m13_target_clip(m13_target *target, int32_t x0, int32_t y0, int32_t x1, int32_t y1);
 
 /* Says that `pixels` (and the depth buffer) hold `rows` rows from `first_row` on and no others. Coordinates remain those of
  * the whole frame, so a frame can be drawn band by band with little memory, or by several threads; its bytes are the same. */
 int m13_target_band(m13_target *target, uint32_t first_row, uint32_t rows);
 
-/* Checks all of it, as each call that draws does. */
+/* Checks the whole target, as each drawing call does. */
 int m13_target_check(const m13_target *target);
 
 /* Sets every pixel inside the clip rectangle to `index`, or every depth there to 0. */
@@ -134,21 +134,21 @@ int m13_clear_depth(const m13_target *target);
  * complement. Add 128 to the shade to round to the nearest. */
 int m13_span(uint8_t *pixels, size_t count, uint16_t shade, uint16_t step);
 
-/* A row of texels: pixels[k] is the texel at (u + k * du, v + k * dv), in 16.16, which wrap. The picture is 2^u_bits wide
- * and 2^v_bits high, row by row; at most 8 bits each. */
+/* A row of texels: pixels[k] is the texel at (u + k * du, v + k * dv), in 16.16; coordinates wrap. The picture is 2^u_bits
+ * wide and 2^v_bits high, row by row; at most 8 bits each. */
 int m13_span_texture(uint8_t *pixels, size_t count, const uint8_t *texels, uint32_t u_bits, uint32_t v_bits, uint32_t u,
                      uint32_t v, uint32_t du, uint32_t dv);
 
 /* ---- One triangle ---------------------------------------------------------------------------------------------------- */
 
-/* How shades run from corner to corner. */
+/* How shades vary between the corners. */
 #define M13_FLAT 0                /* one index for the whole triangle; corners need no shade */
-#define M13_GOURAUD 1             /* linear on the screen, off from exact by less than 3/4 shade */
-#define M13_GOURAUD_8_8 2         /* the same by one span a row, as in 1994: off by less than 1/2 + width/256 */
+#define M13_GOURAUD 1             /* linear on the screen, less than 3/4 shade from exact */
+#define M13_GOURAUD_8_8 2         /* the same with one span per row, as in 1994: off by less than 1/2 + width/256 */
 #define M13_GOURAUD_16_16 3       /* the same in 16.16: off by less than 1/2 + width/65536 */
-#define M13_GOURAUD_PERSPECTIVE 4 /* linear on the face in space; takes depth for 1/w */
+#define M13_GOURAUD_PERSPECTIVE 4 /* linear on the face in space; uses depth as 1/w */
 
-/* A shade is an index of the palette, so put your colours in ramps: indices first + 0 to first + 63, say, from dark to
+/* A shade is an index of the palette, so put your colours in ramps, such as indices first + 0 to first + 63 from dark to
  * light. A triangle whose corners lie in a ramp does not leave it. */
 typedef struct m13_vertex {
     float x, y, depth, shade;
@@ -160,8 +160,8 @@ typedef struct m13_vertex_x {
     int32_t shade;
 } m13_vertex_x;
 
-/* Draws one triangle. The order of the corners makes no difference. `color` is the index of a flat one, 0 to 255. Many are
- * drawn sooner by m13_draw. */
+/* Draws one triangle. The order of the corners makes no difference. `color` is the index for M13_FLAT, 0 to 255. m13_draw
+ * is faster for many triangles. */
 int m13_triangle(const m13_target *target, const m13_vertex corners[3], uint32_t shading, uint32_t color);
 int m13_triangle_x(const m13_target *target, const m13_vertex_x corners[3], uint32_t shading, uint32_t color);
 
@@ -170,8 +170,8 @@ int m13_triangle_x(const m13_target *target, const m13_vertex_x corners[3], uint
 /* The offset of an attribute that vertices lack. */
 #define M13_ABSENT 0xFFFFFFFFu
 
-/* Your own vertices, one every `stride` bytes, and where in each its numbers lie: offsets in bytes, as of offsetof. All
- * numbers are 32 bits, and need not be aligned. */
+/* Your own vertices, one every `stride` bytes, and the positions of their numbers: offsets in bytes, as from offsetof. All
+ * numbers have 32 bits, and need not be aligned. */
 typedef struct m13_mesh {
     uint32_t size;
     uint32_t vertex_count;
@@ -184,48 +184,48 @@ typedef struct m13_mesh {
     uint32_t slope;       /* column, row of the slope table; required with one */
     uint32_t homogeneous; /* 0: x and y are pixels. 1: x / w and y / w are, and triangles are clipped where w < near. */
     uint32_t index_bits;  /* 8, 16 or 32 */
-    uint32_t index_count; /* three a triangle */
+    uint32_t index_count; /* three per triangle */
     float near_w;         /* the near plane of m13_draw, above 0 */
     int32_t near_w_x;     /* the near plane of m13_draw_x, in 16.16, above 0 */
     const void *vertices;
-    const void *indices; /* null: each three vertices in a row are a triangle */
+    const void *indices; /* null: every three consecutive vertices are a triangle */
 } m13_mesh;
 
-/* Vertices of which only a position is there, at offset 0, and no indices. */
+/* Vertices that have only a position, at offset 0, and no indices. */
 int m13_mesh_init(m13_mesh *mesh, const void *vertices, uint32_t count, uint32_t stride);
 
-/* Which triangles are left out, by how their corners run on the screen as you see it. */
+/* Which triangles are culled, by the winding of their corners as seen on the screen. */
 #define M13_CULL_NONE 0
 #define M13_CULL_COUNTER_CLOCKWISE 1
 #define M13_CULL_CLOCKWISE 2
 
-/* How texture coordinates run over a triangle. The last two need depths, or w. */
+/* How texture coordinates are interpolated. The last two need depths, or w. */
 #define M13_AFFINE 0      /* linear on the screen */
 #define M13_EVERY_16 1    /* exact at every sixteenth pixel, linear between */
 #define M13_PERSPECTIVE 2 /* exact at every pixel */
 
-/* What takes the place of the half when a shade is rounded. */
+/* The pattern that replaces the half added when a shade is rounded. */
 #define M13_DITHER_NONE 0
 #define M13_DITHER_BAYER 1
 #define M13_DITHER_BLUE_NOISE 2
 #define M13_DITHER_PS1 3
 
-/* How the triangles of a list are drawn. Each pixel passes, as far as pointers are not null:
+/* How the triangles of a list are drawn. Each pixel passes these stages, if their pointers are not null:
  *
  *     shade    flat, from the corners, or slope_table[row * 256 + column]
- *     texture  shade_table[shade * 256 + texel]; without that table the texel as it is, whatever the shading
+ *     texture  shade_table[shade * 256 + texel]; without that table, the texel itself, whatever the shading
  *     fog      fog_table[fog * 256 + index]
- *     blend    blend_table[index * 256 + what is there]
+ *     blend    blend_table[index * 256 + the frame's index]
  *
- * Tables have 65,536 bytes; see m13_table_... below. All but shading, color and cull needs a context. */
+ * Tables have 65,536 bytes; see m13_table_... below. Everything except shading, color and cull needs a context. */
 typedef struct m13_material {
     uint32_t size;
     uint32_t shading;    /* M13_FLAT, ... */
-    uint32_t color;      /* of M13_FLAT: the index, or with a shade table the shade */
+    uint32_t color;      /* for M13_FLAT: the index, or with a shade table the shade */
     uint32_t cull;       /* M13_CULL_... */
     uint32_t mapping;    /* M13_AFFINE, ... */
     uint32_t dither;     /* M13_DITHER_... */
-    uint32_t keep_depth; /* 1; 0 tests depths and leaves them as they are, for what is translucent (needs a context) */
+    uint32_t keep_depth; /* 1; 0 tests depths but does not store them, for translucent faces (needs a context) */
     uint32_t u_bits;     /* the picture is 2^u_bits wide, at most 256, and 2^v_bits high; it wraps */
     uint32_t v_bits;
     uint32_t reserved;
@@ -236,33 +236,33 @@ typedef struct m13_material {
     const uint8_t *blend_table;
 } m13_material;
 
-/* A material of a shading and nothing else. */
+/* A material with a shading and nothing else. */
 int m13_material_init(m13_material *material, uint32_t shading);
 
 /* Counts of a call. Set `size`, or all of it to 0 and then `size`. */
 typedef struct m13_stats {
     uint32_t size;
-    uint32_t triangles; /* drawn, parts of clipped ones counted each */
+    uint32_t triangles; /* drawn; each part of a clipped one counts */
     uint32_t refused;   /* left out because of M13_VERTEX */
     uint32_t spans;
     uint32_t covered; /* pixels inside triangles and the clip rectangle */
-    uint32_t pixels;  /* those that were written */
+    uint32_t pixels;  /* the pixels written */
 } m13_stats;
 
-/* What textures and other effects work with. */
+/* Working memory for textures and other effects. */
 typedef struct m13_context m13_context;
 
-/* The bytes that a context takes; 0 in a library without effects. */
+/* The size of a context in bytes; 0 in a library without effects. */
 size_t m13_size(void);
 
-/* Makes a context in `bytes` bytes of `memory`, aligned to 16 (malloc's is on 64-bit machines), and writes where it is. It
- * uses no other memory, and there is nothing to be closed: reuse the memory when you no longer need the context. It is used
- * by one call at a time. */
+/* Makes a context in `bytes` bytes of `memory`, aligned to 16 (as malloc's is on 64-bit machines), and stores its address.
+ * It uses no other memory, and need not be closed: reuse the memory when you no longer need the context. Only one call at a
+ * time may use it. */
 int m13_init(void *memory, size_t bytes, m13_context **context);
 
 /* Draws the triangles of a mesh, in their order. `context` may be null if the material does not need it; `stats` may be
- * null. Indices are checked before anything is drawn. What reaches beyond the near plane is clipped, with no crack between
- * neighbours; positions may be any finite numbers. */
+ * null. Indices are checked before anything is drawn. Triangles that extend beyond the near plane are clipped, with no
+ * crack between neighbours; positions may be any finite numbers. */
 int m13_draw(const m13_target *target, const m13_mesh *mesh, const m13_material *material, m13_context *context,
              m13_stats *stats);
 int m13_draw_x(const m13_target *target, const m13_mesh *mesh, const m13_material *material, m13_context *context,
@@ -272,20 +272,20 @@ int m13_draw_x(const m13_target *target, const m13_mesh *mesh, const m13_materia
 
 /* A palette is 768 bytes: red, green and blue of 256 colours, 0 to 255 each. A single colour is 0xRRGGBB. */
 
-/* The names of the palettes that are built in, from 0 on; null behind the last. And a copy of one of them. */
+/* The names of the built-in palettes, from index 0 on; null after the last. And a copy of one of them. */
 const char *m13_palette_name(uint32_t index);
 int m13_palette_named(const char *name, uint8_t palette[768]);
 
 /* Fills `entries` entries from `first` on, evenly from one colour to another. */
 int m13_palette_ramp(uint8_t palette[768], uint32_t first, uint32_t entries, uint32_t from_rgb, uint32_t to_rgb);
 
-/* The index of the nearest colour, of equally near ones the first; or a code below 0. */
+/* The index of the nearest colour, the first of equally near ones; or a code below 0. */
 int m13_palette_nearest(const uint8_t palette[768], uint32_t rgb);
 
-/* The palette that is `part` 256ths of the way to another, 0 to 256. `out` may be either of them. */
+/* The palette `part` 256ths of the way to another, 0 to 256. `out` may be either of them. */
 int m13_palette_fade(const uint8_t palette[768], const uint8_t other[768], uint32_t part, uint8_t out[768]);
 
-/* Moves `entries` entries from `first` on by `steps` places in a circle, upwards if positive. */
+/* Rotates `entries` entries from `first` on by `steps`, upwards if positive. */
 int m13_palette_cycle(uint8_t palette[768], uint32_t first, uint32_t entries, int32_t steps);
 
 /* To the 6 bits of the VGA's DAC, rounded down, and back. On a VGA: outp(0x3C8, 0), then 768 times outp(0x3C9, out[i]).
@@ -296,24 +296,24 @@ int m13_palette_from_dac(const uint8_t dac[768], uint8_t out[768]);
 /* ---- Tables ---------------------------------------------------------------------------------------------------------- */
 
 /* Tables of 65,536 bytes for materials. Each entry is the nearest colour to an exact mixture, as the DAC shows both. They
- * take some milliseconds; on a 386, where it is half a minute, load them from a file. */
+ * take some milliseconds to make; on a 386, where it takes half a minute, load them from a file. */
 
 /* table[shade * 256 + texel]: the texel's colour in a light of shade / 255. `texel_colors` is the palette of the texels, null
  * if it is the same. */
 int m13_table_shades(const uint8_t palette[768], const uint8_t *texel_colors, uint8_t table[65536]);
 
-/* table[fog * 256 + index]: the index's colour in so much fog, of 255. */
+/* table[fog * 256 + index]: the index's colour in fog of this density, 0 to 255. */
 int m13_table_fog(const uint8_t palette[768], uint32_t fog_rgb, uint8_t table[65536]);
 
-/* table[new * 256 + old]: glass. `opacity` is 0 (nothing is seen of it) to 255. */
+/* table[new * 256 + old]: glass. `opacity` is 0 (invisible) to 255. */
 int m13_table_blend(const uint8_t palette[768], uint8_t opacity, uint8_t table[65536]);
 
-/* table[new * 256 + old]: the sum of both, for light that shines. */
+/* table[new * 256 + old]: the sum of both, for things that glow. */
 int m13_table_add(const uint8_t palette[768], uint8_t table[65536]);
 
 /* ---- The way to a screen of today ------------------------------------------------------------------------------------ */
 
-/* Writes the rows of a frame as 0x00RRGGBB or as 5, 6 and 5 bits, by the colours that a VGA shows. `pitch` is in bytes. */
+/* Writes the rows of a frame as 0x00RRGGBB or as 5, 6 and 5 bits, in the colours that a VGA shows. `pitch` is in bytes. */
 int m13_show_32(const m13_target *target, const uint8_t palette[768], uint32_t *out, size_t bytes, size_t pitch);
 int m13_show_16(const m13_target *target, const uint8_t palette[768], uint16_t *out, size_t bytes, size_t pitch);
 

@@ -13,7 +13,7 @@
 
 namespace mode13h {
 
-/// A code below 0, in words.
+/// A code below 0 as an exception, with its message.
 class Error : public std::runtime_error {
 public:
     explicit Error(int code) : std::runtime_error(m13_message(code)), code_(code) {}
@@ -34,7 +34,7 @@ inline int check(int code)
 using Palette = std::array<std::uint8_t, 768>;
 using Table = std::array<std::uint8_t, 65536>;
 
-/// Memory in which textures and other effects work.
+/// Working memory for textures and other effects.
 class Context {
 public:
     Context() : memory_(std::make_unique<Block[]>(m13_size() / sizeof(Block) + 1))
@@ -74,7 +74,7 @@ struct Material : m13_material {
     explicit Material(std::uint32_t shading) { check(m13_material_init(this, shading)); }
 };
 
-/// A frame over bytes of the caller's, which must live as long.
+/// A frame over the caller's bytes, which must live as long.
 class Target : public m13_target {
 public:
     Target(std::span<std::uint8_t> bytes, std::uint32_t columns, std::uint32_t lines, std::size_t bytes_a_row)

@@ -5,7 +5,7 @@ use core::ffi::{c_char, c_int, c_void};
 /// The call succeeded.
 pub const OK: c_int = 0;
 
-/// Makes the codes, and the text of each.
+/// Defines the codes and the text of each.
 macro_rules! codes {
     ($($name:ident = $code:literal, $text:literal;)*) => {
         /// The reason why a call was refused.
@@ -52,7 +52,7 @@ codes! {
     Unsupported = -17, "this library was built without effects";
 }
 
-/// The outcome inside.
+/// The result type used inside the library.
 pub(crate) type Outcome<T = ()> = Result<T, Refusal>;
 
 /// The code of an outcome.
@@ -177,7 +177,7 @@ pub(crate) unsafe trait Sized32: Copy {
     const FIRST: usize = size_of::<Self>();
 }
 
-// SAFETY: numbers and pointers, the size first.
+// SAFETY: only numbers and pointers, with the size first.
 unsafe impl Sized32 for Target {}
 // SAFETY: as above.
 unsafe impl Sized32 for Mesh {}
@@ -186,7 +186,7 @@ unsafe impl Sized32 for Material {}
 // SAFETY: as above.
 unsafe impl Sized32 for Stats {}
 
-/// Reads a struct. One of a later version may be longer; its end is then ignored.
+/// Reads a struct. A struct of a later version may be longer; the rest is then ignored.
 ///
 /// # Safety
 /// `from` is null or holds as many bytes as its size says.
@@ -196,7 +196,7 @@ pub(crate) unsafe fn read<T: Sized32>(from: *const T) -> Outcome<T> {
     }
     // SAFETY: the size is the first field.
     let size = unsafe { from.cast::<u32>().read_unaligned() } as usize;
-    // A size above a page was never set.
+    // A size above a page means that the field was never set.
     if size < T::FIRST || size > 4_096 {
         return Err(Refusal::StructSize);
     }
@@ -223,7 +223,7 @@ pub extern "C" fn m13_message(code: c_int) -> *const c_char {
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_kernel() -> *const c_char {
     let name = mode13h::span::Kernel::default().level();
-    // Rust's names do not end with a zero, so these are the same ones again.
+    // Rust's names do not end with a zero, so they are listed here again as C strings.
     for known in [c"portable", c"x86-64", c"i686", c"arrays", c"sse2", c"neon", c"wasm", c"avx2", c"avx512"] {
         if known.to_bytes() == name.as_bytes() {
             return known.as_ptr();

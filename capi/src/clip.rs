@@ -62,7 +62,7 @@ fn cut<D: Door, K: Kept>(
     Wide { x, y, w, depth, values, ready: None }
 }
 
-/// Clips a triangle, and passes on the triangles of what is left. A mesh with w has a near plane.
+/// Clips a triangle, and passes on the triangles of the part that remains. A mesh with w has a near plane.
 #[inline(never)]
 pub(crate) fn clip<D: Door, K: Kept>(
     corners: [Wide<D::Wide, K>; 3],
@@ -118,8 +118,8 @@ pub(crate) fn doubled_area<K: Kept>([a, b, c]: &[K; 3]) -> i64 {
     (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
 }
 
-/// The triangles of a convex polygon, wound like the whole. Rounding may dent it where a cut is near a corner: a fan
-/// from the dent covers nothing twice, so one is looked for.
+/// The triangles of a convex polygon, wound like the whole. Rounding may dent it where a cut is near a corner. A fan
+/// that starts at the dent covers nothing twice, so this looks for one.
 fn fan<K: Kept>(corners: &[K; MOST], count: usize, triangle: &mut dyn FnMut([K; 3])) {
     let part = |apex: usize, i: usize| [apex, apex + i - 1, apex + i].map(|i| corners[i % count % MOST]);
     let sign = (2..count).map(|i| doubled_area(&part(0, i))).sum::<i64>().signum();

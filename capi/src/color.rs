@@ -237,7 +237,7 @@ impl Search {
     }
 }
 
-/// Fills a table, given the byte for a row and a column.
+/// Fills a table with the byte that `byte` returns for each row and column.
 ///
 /// # Safety
 /// It is null or as long.
@@ -252,7 +252,7 @@ unsafe fn fill(table: *mut u8, mut byte: impl FnMut(u8, u8) -> u8) -> Outcome {
     Ok(())
 }
 
-/// A palette as it is, the same as the card shows it, and a search in the latter.
+/// A palette as given, the palette as the card shows it, and a search in the latter.
 ///
 /// # Safety
 /// It is null or as long.
@@ -367,7 +367,7 @@ unsafe fn show<PIXEL: Copy + Default>(
     }
     for (i, y) in rows.enumerate() {
         for (x, index) in checked.frame.row(y).unwrap_or_default().iter().enumerate() {
-            // SAFETY: before the bytes that are needed. Rows may begin anywhere.
+            // SAFETY: the offset is below the number of bytes that are needed. Rows may begin anywhere.
             unsafe {
                 out.cast::<u8>().add(i * pitch).cast::<PIXEL>().add(x).write_unaligned(pixels[usize::from(*index)]);
             }

@@ -95,8 +95,8 @@ pub(crate) struct Wide<N, K> {
     /// The mesh's depth, if it has one; otherwise it follows from w.
     pub(crate) depth: N,
     pub(crate) values: Values<N>,
-    /// The corner, if it needs no clipping. It stays exactly as it is, because a neighbour that needs no clipping is
-    /// drawn with it.
+    /// The corner, if it needs no clipping. It stays exactly as it is, because a neighbour that is not clipped uses it
+    /// too.
     pub(crate) ready: Option<K>,
 }
 
@@ -126,7 +126,7 @@ pub(crate) trait Door {
     fn depth(bits: u32) -> Option<Self::Wide>;
     /// The w of a mesh whose vertices have none: 1.
     fn one() -> Self::Wide;
-    /// The vertex of x, y, w, depth and shade; `None` if it must be clipped. `near` is that of a mesh that has w.
+    /// The vertex with this x, y, w, depth and shade; `None` if it must be clipped. `near` is given if the mesh has w.
     fn vertex(numbers: [Self::Wide; 5], near: Option<Self::Wide>) -> Option<Vertex>;
     /// Values as attributes.
     fn attributes(values: &Values<Self::Wide>) -> Attributes;
@@ -141,7 +141,7 @@ pub(crate) trait Door {
         if positive { limit } else { -limit }
     }
     /// The point between `a`, inside, and `b`, outside, whose distances from a plane are `inside` and `outside`. With
-    /// `by`, values are linear on the screen: it has `b`'s w and the point's.
+    /// `by`, which holds `b`'s w and the point's, values are linear on the screen.
     fn between(
         a: Self::Wide,
         b: Self::Wide,
@@ -260,7 +260,7 @@ impl Door for Fixed {
     #[inline(always)]
     fn vertex([x, y, w, depth, shade]: [i64; 5], near: Option<i64>) -> Option<Vertex> {
         let (x, y, depth) = match near {
-            // Those of a mesh have 32 bits; those of a cut are between two such.
+            // Numbers of a mesh have 32 bits; those of a cut lie between two of them.
             None => {
                 let pixels = |c: i64| I24F8::round_from_i16f16(I16F16::from_bits(c as i32));
                 (pixels(x), pixels(y), depth as u32)
@@ -425,7 +425,7 @@ impl Source {
         !self.mesh.indices.is_null()
     }
 
-    /// A number of a vertex, 0 if vertices lack it; `None` if it is not a number.
+    /// One number of a vertex, 0 if vertices lack it; `None` if it is not finite.
     ///
     /// # Safety
     /// `vertex` is one of the mesh, and the offset one that was checked.
@@ -474,8 +474,8 @@ impl Source {
     }
 
     /// Writes vertex `i` in the rasterizer's form to two places. Returns false if it must be clipped, or a number of it
-    /// is invalid or out of range. (A copy from the first place would read in one piece what had just been written in
-    /// four.)
+    /// is invalid or out of range. (Copying from the first place to the second would load in one piece what had just
+    /// been stored in four.)
     ///
     /// # Safety
     /// It is below the number of vertices, and the mesh holds as many as it says.

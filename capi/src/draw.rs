@@ -13,12 +13,12 @@ use crate::target::{Bytes, Checked, Depth, check};
 
 #[cfg(feature = "effects")]
 use crate::effects::{Context, Effects};
-/// There is no context without effects.
+/// Without effects there is no context.
 #[cfg(not(feature = "effects"))]
 enum Context {}
 
-/// True where doubles are fast, and the rasterizer sets up eight triangles at a time. Elsewhere it walks down each one,
-/// however it is called, and the code for lists is left out.
+/// True where doubles are fast, and the rasterizer sets up eight triangles at a time. Elsewhere it walks down each
+/// triangle, however it is called, and the code for lists is left out.
 const IS_BATCHED: bool = cfg!(any(
     target_arch = "x86_64",
     target_arch = "aarch64",
@@ -431,7 +431,7 @@ unsafe fn draw_by(
     context: *mut Context,
     stats: *mut Stats,
 ) -> Outcome {
-    // SAFETY: by the caller, as all that follows.
+    // SAFETY: by the caller, and so is all that follows.
     let (checked, mesh, material) = unsafe { (check(target)?, read(mesh)?, read(material)?) };
     if !stats.is_null() {
         // SAFETY: not null.
@@ -473,7 +473,7 @@ unsafe fn draw_by(
         }
     } else {
         with_raster!(checked, |raster| {
-            // Tested again for the compiler's sake.
+            // Tested again so that the compiler sees it.
             if IS_BATCHED
                 && let Some(many) = readers.many
                 && source.triangles() >= FEW
@@ -585,7 +585,7 @@ pub unsafe extern "C" fn m13_triangle_x(
 }
 
 impl Mesh {
-    /// A mesh without vertices; they would have only positions, at the start of each.
+    /// A mesh without vertices. Vertices have only positions, at the start of each.
     pub const NONE: Self = Self {
         size: size_of::<Self>() as u32,
         vertex_count: 0,
@@ -627,7 +627,7 @@ impl Material {
     };
 }
 
-/// Makes a mesh of vertices of which only the stride is known.
+/// Makes a mesh from vertices of which only the stride is known.
 ///
 /// # Safety
 /// See the header.
@@ -657,7 +657,7 @@ pub unsafe extern "C" fn m13_material_init(material: *mut Material, shading: u32
     }))
 }
 
-/// The number of bytes that a context takes.
+/// The number of bytes that a context needs.
 #[unsafe(no_mangle)]
 pub extern "C" fn m13_size() -> usize {
     #[cfg(feature = "effects")]

@@ -12,10 +12,10 @@ use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal};
 use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
-/// The memory that the stages allocate when they draw for the first time, and no more later.
+/// The memory that the stages allocate when they first draw; later they allocate nothing.
 const HEAP: usize = 0x1_C000;
 
-/// The bytes of a context, wherever its memory begins, if that is aligned to 16.
+/// The size of a context in bytes, if its memory is aligned to 16.
 pub(crate) const BYTES: usize = size_of::<Context>() + HEAP;
 
 const MAGIC: u64 = 0x6D31_3363_6F6E_7478;
@@ -60,7 +60,7 @@ pub(crate) unsafe fn init(memory: *mut c_void, bytes: usize, context: *mut *mut 
     Ok(())
 }
 
-/// Draws something for the first time.
+/// Draws a first triangle, so that the stages allocate all they need.
 fn warm(batch: &mut EffectBatch) {
     let mut pixels = [0];
     let Ok(frame) = Frame::new(&mut pixels, 1, 1, 1) else { return };
@@ -124,7 +124,7 @@ pub(crate) struct Effects<'a> {
 }
 
 impl Effects<'_> {
-    /// Checks both.
+    /// Checks the context and the material.
     ///
     /// # Safety
     /// `context` is null or one that `init` has made, and tables and pictures of the material are as long as stated.

@@ -1,5 +1,4 @@
-//! The parts that a library for C needs and an `rlib` does not: an allocator in the caller's memory, and a panic
-//! handler.
+//! What a C library needs and an `rlib` does not: an allocator in the caller's memory, and a panic handler.
 
 #[cfg(feature = "effects")]
 pub(crate) use arena::within;
@@ -9,8 +8,8 @@ mod arena {
     use core::alloc::{GlobalAlloc, Layout};
     use core::sync::atomic::{AtomicUsize, Ordering};
 
-    /// Hands out the memory of the context that is being made, and takes nothing back. At any other time it has none,
-    /// as the stages already have all they need.
+    /// Hands out the memory of the context that is being made, and takes nothing back. At any other time it has no
+    /// memory to give, as the stages already have all they need.
     struct Arena {
         /// The first free address and the end; 0 while no context is made.
         next: AtomicUsize,

@@ -14,7 +14,8 @@ pub(crate) struct Bytes {
 }
 
 impl Bytes {
-    /// The range that starts at a pointer, which must not be null; nor may the range reach beyond the end of memory.
+    /// The range that starts at a pointer. The pointer must not be null, and the range must not reach beyond the end of
+    /// memory.
     pub(crate) fn new<T>(pointer: *const T, length: usize) -> Outcome<Self> {
         if pointer.is_null() {
             return Err(Refusal::Null);

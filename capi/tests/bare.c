@@ -1,5 +1,5 @@
-/* A program without a C library, by 16.16 alone: `list` draws by m13_draw_x, otherwise by m13_triangle_x. Its exit status is
- * 0 if a pixel has the shade that it must have. */
+/* A program without a C library, with 16.16 alone: `list` uses m13_draw_x, otherwise m13_triangle_x. Its exit status is
+ * 0 if a pixel has the expected shade. */
 #include "mode13h.h"
 
 static uint8_t pixels[64 * 40];

@@ -1,4 +1,4 @@
-/* Draws by every part of the library, and prints a hash of each: the same lines on every machine and by every kernel. Without
+/* Draws with every part of the library, and prints hashes: the same lines on every machine and with every kernel. Without
  * an operating system it runs on a bare Cortex-M or RISC-V under QEMU, where it talks by semihosting, and in WebAssembly. */
 #include "mode13h.h"
 
@@ -300,7 +300,7 @@ int main(void) { return draw_all(); }
 
 #if defined __wasm__ || defined __arm__ || defined __riscv
 
-/* Compilers call these, whatever they are told. */
+/* Compilers call these in any case. */
 void *memset(void *to, int byte, size_t bytes);
 void *memset(void *to, int byte, size_t bytes)
 {

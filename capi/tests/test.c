@@ -1,5 +1,5 @@
-/* Every function, with what is right and with what is wrong. Canaries stand round everything that is written.
- *     test [SEED]    exit status 1 and a line for each thing that is wrong */
+/* Tests every function with valid and with invalid arguments. Canaries surround everything that is written.
+ *     test [SEED]    exit status 1, and a line for each failure */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -322,7 +322,7 @@ static void colors(void)
     release(out, 4 * 12 + 3);
 }
 
-/* Random arguments: whatever they are, nothing is written beyond what they name, and nothing crashes. */
+/* Random arguments: nothing is written outside the memory that they name, and nothing crashes. */
 static void fuzz(m13_context *context, int rounds)
 {
     unsigned long accepted = 0, refused[20] = { 0 };

@@ -271,7 +271,7 @@ fn plural(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// An error if the program has been told to end. It is never seen: [`output::long_file`] does not return then.
+/// An error if the program has been told to end. Nobody sees it, because [`output::long_file`] does not return then.
 fn go_on() -> Result<(), Failure> {
     if output::is_interrupted() { Err(Failure::work("interrupted")) } else { Ok(()) }
 }

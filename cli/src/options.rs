@@ -172,7 +172,7 @@ struct Pipeline {
     kernel: Option<Kernel>,
 }
 
-/// The options that say nothing to a program for DOS, which draws by an integer path of its own.
+/// The options that mean nothing to a DOS program, which draws by an integer path of its own.
 pub(crate) const IGNORED_BY_DOS: [&str; 7] =
     ["hidden-surfaces", "mapping", "mipmaps", "no-mipmaps", "arithmetic", "kernel", "vertex-bits"];
 
@@ -189,7 +189,7 @@ pub(crate) struct Moment {
 }
 
 impl Moment {
-    /// The option's help in a command that shows a single frame.
+    /// Adapts the option's help to a command that shows a single frame.
     pub(crate) fn of_one_frame(command: clap::Command) -> clap::Command {
         command.mut_arg("time", |time| {
             time.long_help(
@@ -211,7 +211,7 @@ impl Moment {
 }
 
 impl Drawing {
-    /// The kernel that was asked for by option or else by environment, or the fastest.
+    /// The kernel named by the option, or else by the environment, or else the fastest.
     pub(crate) fn kernel(&self) -> Result<Kernel, Failure> {
         if let Some(kernel) = self.pipeline.kernel {
             return Ok(kernel);
@@ -236,7 +236,7 @@ impl Drawing {
         given.map(|(name, _)| format!("--{name}")).collect()
     }
 
-    /// Reads INPUT as was asked for.
+    /// Reads INPUT with these options.
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
         let mut input = input::input(words, &Options { crease: self.crease })?;
         match &mut input {
@@ -263,7 +263,7 @@ impl Drawing {
         Ok(stage)
     }
 
-    /// Makes the stage of INPUT, drawn as was asked for.
+    /// Makes the stage of INPUT, drawn with these options.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let look_of_scene = if let Input::Scene { look, .. } = &input { *look } else { None };
@@ -320,20 +320,20 @@ impl Drawing {
         Ok(stage)
     }
 
-    /// Name of the palette that was asked for.
+    /// Name of the palette from the command line.
     pub(crate) fn palette_name(&self) -> Option<String> {
         let words = self.palette.as_deref()?;
         Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
     }
 
-    /// The palette that was asked for, if that is a file.
+    /// The palette from the command line, if that is a file.
     pub(crate) fn palette_file(&self) -> Option<PathBuf> {
         let words = self.palette.as_deref()?;
         let is_name = words == input::AUTO || words.to_str().and_then(builtin::by_name).is_some();
         (!is_name).then(|| PathBuf::from(words))
     }
 
-    /// The mapping that was asked for.
+    /// The mapping from the command line.
     pub(crate) fn mapping(&self) -> Option<Mapping> {
         self.pipeline.mapping
     }
@@ -385,7 +385,7 @@ pub(crate) fn finite(words: &str) -> Result<f64, String> {
 
 /// Factor of enlargement, on the command line.
 fn factor(words: &str) -> Result<f64, String> {
-    // Beyond these a camera's f32 shows nothing.
+    // Beyond these limits a camera in f32 shows nothing.
     number(words, " from 0.001 to 1000", |factor| (1e-3..=1e3).contains(factor))
 }
 

@@ -39,7 +39,7 @@ pub(crate) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Prints to standard output, unless the program is to be quiet.
+/// Prints to standard output, unless `--quiet` was given.
 pub(crate) fn say(text: &str) -> Result<(), Failure> {
     if is_quiet() { Ok(()) } else { print(text) }
 }
@@ -51,7 +51,7 @@ pub(crate) fn note(line: impl Display) {
     let _ = io::stderr().write_all(format!("mode13h: {line}\n").as_bytes());
 }
 
-/// Prints a [`note`] that is no warning, unless the program is to be quiet.
+/// Prints a [`note`] that is not a warning, unless `--quiet` was given.
 pub(crate) fn remark(line: impl Display) {
     if !is_quiet() {
         note(line);
@@ -63,7 +63,7 @@ pub(crate) fn remark(line: impl Display) {
 pub(crate) fn finish_files_when_interrupted() {
     let end = || {
         INTERRUPTED.store(true, Ordering::Relaxed);
-        // First wait for the long file, which the flag ends; meanwhile others may still be started.
+        // First wait for the long file, which the flag makes end; meanwhile others may still be started.
         let _no_long = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
         // No file is started from here on, and those already started are waited for. The locks are never released.
         let _none = WRITING.write().unwrap_or_else(PoisonError::into_inner);
@@ -91,8 +91,8 @@ pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` checks
-/// [`is_interrupted`] all the time, and then gives the file up: in that case this never returns, and the program ends
-/// as interrupted.
+/// [`is_interrupted`] all the time, and gives the file up if it is set: in that case this never returns, and the
+/// program ends as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
     let writing = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
@@ -179,7 +179,7 @@ pub(crate) fn check_extension(path: &Path, wanted: &str, what: &str) -> Result<(
     }
 }
 
-/// A progress bar on standard error, if that is a terminal and the program is not to be quiet.
+/// A progress bar on standard error, if that is a terminal and `--quiet` was not given.
 pub(crate) fn bar(length: u64, template: &str) -> ProgressBar {
     if is_quiet() {
         return ProgressBar::hidden();

@@ -16,7 +16,7 @@ use crate::options::{Drawing, Moment, ShadingOptions};
 use crate::turntable::Pose;
 use crate::{input, output};
 
-/// Time from one frame to the next, in seconds: films have 35 a second.
+/// Time from one frame to the next, in seconds: animations have 35 frames a second.
 const STEP: f64 = 1.0 / 35.0;
 
 /// Time for measuring all prices together, and the least and most for one.
@@ -241,7 +241,7 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
     if !common.is_empty() {
         text += &table("all objects", &common, &widths);
     }
-    // Several objects may have one name.
+    // Several objects may have the same name.
     let heading = |row: &Row| match objects.iter().filter(|object| object[0].0.object == row.object).count() {
         1 => row.object.clone(),
         _ => format!("{} (object {})", row.object, row.index),

@@ -7,10 +7,10 @@ use std::sync::{Mutex, PoisonError};
 
 use crate::failure::Failure;
 
-/// The files so far, the names that led to them, and what was done to them.
+/// The files so far, the names that led to them, and whether they were read or written.
 static USED: Mutex<Vec<(Identity, PathBuf, &str)>> = Mutex::new(Vec::new());
 
-/// A file itself, whatever name leads to it.
+/// The identity of a file, whatever name leads to it.
 #[derive(PartialEq, Eq)]
 enum Identity {
     /// Device and number of the file, which are the same through links of both kinds.

@@ -128,7 +128,7 @@ impl Options {
     }
 }
 
-/// A size in pixels, on the command line.
+/// Parses a size in pixels from the command line.
 fn size(words: &str) -> Result<(u32, u32), String> {
     let side = |word: &str| word.parse().ok().filter(|side| (1..=Frame::MAX_SIDE).contains(side));
     let size = words.split_once('x').and_then(|(width, height)| Some((side(width)?, side(height)?)));
@@ -328,7 +328,7 @@ impl Out {
         }
     }
 
-    /// Sets the duration of a film whose number of frames was not given.
+    /// Sets the duration of an animation whose number of frames was not given.
     fn lasts(&mut self, seconds: f64) {
         if let Out::Film(film) = self {
             film.lasts(seconds);
@@ -362,7 +362,7 @@ impl Out {
     }
 }
 
-/// Kind of film that a name asks for, if it asks for one.
+/// Kind of animation that a file name stands for, if any.
 fn film_kind(out: &Path) -> Option<Kind> {
     let ends_in = |wanted| output::has_extension(out, wanted);
     match () {
@@ -376,11 +376,11 @@ fn film_kind(out: &Path) -> Option<Kind> {
 /// Motion from frame to frame.
 struct Motion {
     frames: u32,
-    /// Over all frames, in degrees.
+    /// The turn over all frames, in degrees.
     turn: Option<f64>,
     /// The moment of the first frame, in seconds.
     at: f64,
-    /// Frames a second, where there is no `turn`.
+    /// Frames per second, used if there is no `turn`.
     rate: f64,
 }
 
@@ -425,8 +425,8 @@ impl fmt::Display for Timed {
     }
 }
 
-/// Errors that the frames are drawn within. If they have to fit in a time, every frame is drawn once to find its error,
-/// one after the other, before the first is written.
+/// The error budget of each frame. If frames have to fit in a time, all of them are drawn once, one after the other, to
+/// find their errors before the first is written.
 #[derive(Default)]
 struct Run {
     /// Errors of all frames; empty if no time was asked for.
@@ -471,7 +471,7 @@ impl Run {
 struct Artist {
     renderer: Renderer,
     stage: Turntable,
-    /// The VGA: its frame, unless frames have another size, and its palette.
+    /// The VGA: its palette, and its frame unless frames have another size.
     vga: Vga,
     square: Option<SquareFrame>,
 }

@@ -148,14 +148,15 @@ mod tests {
         shipped.chain([("dark", dark), ("far fog", far_fog)]).collect()
     }
 
-    /// Each switch turns its effect on or off in every scene, and back; and where it does, the picture changes.
+    /// Each switch turns its effect off or on and back again in every scene; where it has an effect, the picture
+    /// changes.
     #[test]
     fn every_switch_turns_its_effect_and_back_in_every_scene() {
         let mut failures = Vec::new();
         for (name, scene) in all_scenes() {
             for (_, switch) in Switch::KEYS {
                 let mut stage = Turntable::of_scene(scene.clone());
-                // The flash's lamp passes.
+                // A moment at which the lamp of `flash` passes.
                 stage.show(0.3 * scene.duration, Pose::FIRST);
                 let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
                 let mut draw = |scene: &Scene, renderer: &mut Renderer| {
@@ -207,7 +208,7 @@ mod tests {
             Switch::Texture.turn(&mut stage, &mut renderer).expect("a legal scene");
             stage.scene.settings.dither = None;
             let without = draw(&stage, &mut renderer);
-            // White in white light: greys, or what is nearest to them.
+            // White in white light: greys, or the entries nearest to them.
             let is_grey = |color: Rgb| color.r.abs_diff(color.g).max(color.g.abs_diff(color.b)) < 24;
             assert!(without.iter().all(|color| is_grey(*color)), "{colors:?}");
             assert!(without != with && without.iter().any(|color| color.brightness() > 100_000), "{colors:?}");

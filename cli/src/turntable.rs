@@ -1,4 +1,4 @@
-//! Turntable: a model in a scene made for it, or a scene of its own.
+//! Turntable: a model in a scene made for it, or a scene from a file.
 
 use core::f64::consts::TAU;
 
@@ -21,7 +21,7 @@ use mode13h_assets::model_file::Rig;
 pub(crate) enum Colors {
     /// The colours of a palette.
     Palette(Box<Palette>),
-    /// Colours that are made for what is seen.
+    /// Colours made for what is visible.
     Auto,
 }
 
@@ -34,16 +34,16 @@ impl From<Palette> for Colors {
 /// How the user has turned and enlarged the picture, in addition to the motion by the clock.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
-    /// About its own upward axis, counter-clockwise seen from above, in radians.
+    /// The rotation about its own upward axis, counter-clockwise as seen from above, in radians.
     pub(crate) turn: f64,
-    /// Its upper end towards the camera, in radians.
+    /// The tilt of its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
-    /// Its size relative to that at first.
+    /// Its size relative to the initial one.
     pub(crate) zoom: f64,
 }
 
 impl Pose {
-    /// The pose that every picture begins in.
+    /// The pose in which every picture starts.
     pub(crate) const FIRST: Pose = Pose { turn: 0.0, tilt: 0.0, zoom: 1.0 };
 }
 
@@ -65,25 +65,25 @@ pub(crate) struct Turntable {
     frames_still: bool,
     /// The camera's own place.
     camera: Camera,
-    /// Factor of its size, whatever the pose.
+    /// Enlargement, independent of the pose.
     zoom: f64,
     /// The objects' materials, whatever the palette.
     materials: Vec<Vec<Material>>,
     /// True if their images are shown.
     has_images: bool,
-    /// The palette whose ramps they name.
+    /// The palette whose ramps the materials name.
     palette: Option<Palette>,
     /// Dither that the scene asks for, whatever the palette.
     own_dither: Option<DitherPattern>,
-    /// The models in it that move by themselves.
+    /// The models in the scene that move by themselves.
     playbacks: Vec<Playback>,
-    /// Dither or none, whatever the scene and the palette, if that was asked for.
+    /// The dither, or none, that the user asked for, if any; it overrides scene and palette.
     dither: Option<Option<DitherPattern>>,
     /// The look whose colours an automatic palette gets.
     look: Option<Look>,
     /// The automatic palette, made when first asked for.
     automatic: Option<AutomaticPalette>,
-    /// Colours that were chosen last.
+    /// The colours chosen last.
     pub(crate) colors: Option<Colors>,
 }
 
@@ -95,7 +95,7 @@ enum Shown {
     Scene,
 }
 
-/// The longest round, in seconds, as in a scene's file: a film has a frame for every part of it.
+/// The longest round, in seconds, as in a scene file: an animation has frames for all of it.
 const MAX_DURATION: f64 = 3600.0;
 
 impl Turntable {
@@ -114,7 +114,7 @@ impl Turntable {
     ) -> Result<Turntable, RenderError> {
         let mut stage = Turntable::new(studio(object, up)?, Shown::Model);
         if let Some(playback) = stage.play(moving, false, false) {
-            // Its angles are set from the time all the same.
+            // Even so, its angles are set from the time.
             stage.scene.motions.iter_mut().for_each(|motion| turn_by(motion, 0.0));
             stage.camera = playback.framing(&stage.scene.objects()[0]);
             stage.playbacks.push(playback);
@@ -139,7 +139,7 @@ impl Turntable {
         Ok(stage)
     }
 
-    /// Has the only object play a clip of a rig; a round takes as long as the clip.
+    /// Makes the only object play a clip of a rig; a round takes as long as the clip.
     fn play(&mut self, moving: Option<(Rig, usize)>, lights: bool, camera: bool) -> Option<Playback> {
         let (rig, clip) = moving?;
         let playback = Playback::new(rig, clip, &self.scene, *self.scene.object_ids().first()?)?;
@@ -191,8 +191,8 @@ impl Turntable {
         self.scene.duration
     }
 
-    /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself time goes on, 360
-    /// degrees being one round; around a scene that stands still the camera circles.
+    /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself, time passes instead,
+    /// with 360 degrees for one round; around a scene that does not move, the camera circles.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
@@ -235,7 +235,7 @@ impl Turntable {
         self.frames_still = true;
     }
 
-    /// Enlarges it by this factor.
+    /// Enlarges the picture by this factor.
     pub(crate) fn set_zoom(&mut self, zoom: f64) {
         self.zoom = zoom;
     }
@@ -312,9 +312,9 @@ impl Turntable {
         materials
     }
 
-    /// Changes the colours. The background keeps the colour that it was chosen for. If a palette has no ramps, objects
-    /// are drawn in the entries nearest to their own colours, or to those of the ramps that they had, with dither,
-    /// because a general-purpose palette has few shades of any one colour.
+    /// Changes the colours. The background keeps its chosen colour. If a palette has no ramps, objects are drawn in the
+    /// entries nearest to their own colours, or to those of the ramps that they had, with dither, because a
+    /// general-purpose palette has few shades of any one colour.
     pub(crate) fn set_colors(&mut self, colors: &Colors) -> Result<(), RenderError> {
         let mut dither = self.own_dither;
         let shown = self.materials_shown();
@@ -341,7 +341,7 @@ impl Turntable {
         Ok(())
     }
 
-    /// The palette that is made for what is seen over a round.
+    /// The palette made for what is visible over a round, computed once.
     pub(crate) fn automatic(&mut self) -> Result<&AutomaticPalette, RenderError> {
         let made = match self.automatic.take() {
             Some(made) => made,
@@ -356,7 +356,7 @@ impl Turntable {
         Ok(self.automatic.insert(made))
     }
 
-    /// A palette for what is seen over a round.
+    /// Makes a palette for what is visible over a round.
     fn made(&self) -> Result<AutomaticPalette, RenderError> {
         let mut scene = self.at_first();
         if self.playbacks.is_empty() {
@@ -365,7 +365,7 @@ impl Turntable {
         let round = scene.duration;
         let is_model = matches!(self.shown, Shown::Model);
         if is_model {
-            // In a second round it also turns, as the user may turn it.
+            // In a second round the scene also turns, because the user may turn it.
             scene.duration *= 2.0;
         }
         let periods: Vec<f64> = self.playbacks.iter().map(|playback| playback.clip().duration()).collect();
@@ -400,7 +400,7 @@ impl Turntable {
     }
 }
 
-/// Sets the turns a second, about y alone, of a motion that spins.
+/// Sets the speed, in turns per second about y alone, of a motion that spins.
 fn turn_by(motion: &mut Motion, per_second: f64) {
     if let Motion::Spin { turns, .. } = motion {
         *turns = [0.0, per_second, 0.0];
@@ -442,7 +442,7 @@ fn gone_round(mut camera: Camera, turn: f64, tilt: f64) -> Camera {
     camera
 }
 
-/// `v` turned about a unit axis, counter-clockwise seen from its end (Rodrigues' formula).
+/// Rotates `v` about a unit axis, counter-clockwise as seen from its end (Rodrigues' formula).
 fn about(axis: Vec3, angle: f64, v: Vec3) -> Vec3 {
     let (sine, cosine) = libm::sincos(angle);
     let (sine, cosine) = (sine as f32, cosine as f32);

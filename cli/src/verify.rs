@@ -295,7 +295,7 @@ mod tests {
         assert_eq!((failure.status(), failure.to_string().as_str()), (1, "2 checks failed"));
     }
 
-    /// A wrong byte is reported by kernel, frame and pixel, in text and as JSON.
+    /// A wrong byte is reported with its kernel, frame and pixel, in text and as JSON.
     #[test]
     fn a_wrong_frame_is_named_with_its_pixel() {
         let frames = chosen(Some("canvas/bands/plain"));

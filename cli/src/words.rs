@@ -114,7 +114,7 @@ pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
     if let Some(word) = empty_word() {
         return Err(Err(Failure::words(format!("{word}: empty value ({} shows the options)", help()))));
     }
-    // The program's help has the commands; how scenes are drawn is in the help of those that draw.
+    // The program's own help lists the commands; drawing options are in the help of the commands that draw.
     let without_drawing = |arg: clap::Arg| {
         let has_heading = arg.get_help_heading().is_some();
         arg.hide(has_heading)
@@ -214,7 +214,7 @@ fn plain(says: &str, error: &clap::Error) -> String {
     says.strip_suffix(cause.as_str()).map_or(says.to_string(), |before| format!("{before}{reworded}"))
 }
 
-/// Finds the command that the first word nearly is, if it is nothing else, and asks whether it was meant.
+/// Finds the command that the first word resembles, if it is nothing else, and asks whether it was meant.
 fn mistyped_command() -> Option<String> {
     let word = first_word()?;
     let command = typo::mistyped_command(&word)?;

@@ -318,7 +318,7 @@ pub fn pixels(vertices: &[Vertex; 3], interpolation: Interpolation, width: i32, 
     drawn
 }
 
-/// The depth at a covered pixel, following the definition in `raster::depth` to the letter.
+/// The depth at a covered pixel, following the definition in `raster::reference::depth` to the letter.
 pub fn depth_at(vertices: &[Vertex; 3], x: i32, y: i32) -> u32 {
     Depths::of_vertices(vertices).at(x, y)
 }

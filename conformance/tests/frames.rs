@@ -1,4 +1,4 @@
-//! Frames: every kernel of this machine gives their hashes, and the scenes are those of the files.
+//! Every kernel of this machine draws frames with the expected hashes, and the scenes match the shipped files.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,9 +8,9 @@ use mode13h::span::Kernel;
 use mode13h_assets::shipped as files;
 use mode13h_conformance::frames::{self, Frame, shipped};
 
-/// Every frame that is not as expected, by its name, with its first wrong pixel where the kernels differ.
+/// The names of all frames that differ from what is expected, each with its first wrong pixel where the kernels differ.
 fn wrong(kernel: Kernel, frames: &[Frame]) -> Vec<String> {
-    // One renderer for all: what it keeps from frame to frame must not be seen.
+    // One renderer for all frames: its caches must not show.
     let mut renderer = Renderer::new();
     let differs = |frame: &Frame| {
         let drawn = match frame.draw_by(&mut renderer, kernel) {
@@ -51,7 +51,7 @@ fn names_and_pictures_are_distinct() {
     let frames = frames::all();
     let names: BTreeSet<&str> = frames.iter().map(|frame| frame.name.as_str()).collect();
     assert_eq!(names.len(), frames.len());
-    // A frame that is as another shows nothing new, unless the two say that a setting changes nothing.
+    // A frame equal to another tests nothing new, unless the pair shows that a setting changes nothing.
     let mut by_hash = std::collections::BTreeMap::<_, Vec<&str>>::new();
     for frame in &frames {
         by_hash.entry(frame.expected()).or_default().push(&frame.name);
@@ -61,7 +61,7 @@ fn names_and_pictures_are_distinct() {
     assert!(by_hash.len() * 20 >= frames.len() * 17, "{alike:#?}");
 }
 
-/// The values are the files' scenes, to the last bit.
+/// The scenes built in code equal those in the files, to the last bit.
 #[test]
 fn shipped_scenes_are_their_files() {
     assert_eq!(
@@ -79,7 +79,7 @@ fn shipped_scenes_are_their_files() {
     }
 }
 
-/// A wrong byte is found, and its place is told.
+/// A wrong byte is found, and its position is reported.
 #[test]
 fn a_difference_names_its_pixel() {
     let frames = frames::all();

@@ -1,4 +1,4 @@
-//! Every loop of this machine is its definition, and none is left out.
+//! Every loop of this machine matches its definition, and none is left out.
 
 use mode13h::span::Kernel;
 use mode13h_conformance::loops::{Cases, all};

@@ -1,4 +1,4 @@
-"""Compares what a VGA held with an indexed PNG of that frame.
+"""Compares the contents of a VGA with an indexed PNG of the same frame.
 
     compare.py SCREEN.BIN FRAME.png               video memory and DAC, as the program for DOS writes them
     compare.py VIDEO.BIN SCREEN.ppm FRAME.png     video memory, and the picture that QEMU shows, twice as large

@@ -1,8 +1,8 @@
-/* What a 32-bit program has from the stub before it, which machines/dos/link makes a program for DOS of. It begins in
- * dos_main, and ends when that returns its exit status.
+/* The services of the stub for a 32-bit program, which machines/dos/link turns into a program for DOS. The program begins
+ * in dos_main, and ends when that returns its exit status.
  *
- * Addresses are flat, and 0 is where the program was loaded. Interrupts are off, except while one is called: what the
- * keyboard sends waits until then. */
+ * Addresses are flat, and 0 is where the program was loaded. Interrupts are off, except while one is called: key
+ * presses wait until then. */
 #ifndef DOS_H
 #define DOS_H
 
@@ -13,13 +13,13 @@ struct dos {
     const uint8_t *unused;
     uint32_t unused_bytes;
     uint8_t *stack_top;
-    uint32_t heap_kb;       /* of extended memory that `--heap` asked for */
+    uint32_t heap_kb;       /* of extended memory, as set by `--heap` */
     uint8_t *heap;          /* where it begins, aligned to 16 */
     uint8_t *low;           /* linear address 0 */
     const uint8_t *command; /* the command line: a byte with its length, then its characters */
     void (*service)(void);  /* calls interrupt `number` of DOS or the BIOS in real mode, with these registers */
     uint32_t eax, ebx, ecx, edx, ds, number;
-    uint32_t flags;       /* what the interrupt left */
+    uint32_t flags;       /* as the interrupt left them */
     uint32_t segment;     /* the program's, for what DS points to */
     uint8_t buffer[1024]; /* at DOS_BUFFER in that segment: what an interrupt reads or writes */
 };

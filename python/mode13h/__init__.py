@@ -33,7 +33,7 @@ Shading = Literal[
     "phong",
     "gouraud-float",
 ]
-"""How shades run over a face; `gouraud` is `gouraud-8.8-reseeded`."""
+"""How shades vary over a face; `gouraud` is `gouraud-8.8-reseeded`."""
 
 Palette = Literal[
     "grey",
@@ -46,7 +46,7 @@ Palette = Literal[
     "cube",
     "bios",
 ]
-"""The palettes that the engine has."""
+"""The built-in palettes."""
 
 
 def render(
@@ -101,7 +101,7 @@ def render(
     points = _numbers("vertices", vertices, ("n", 3))
     _finite("vertex", points)
     indices = _indices(faces, len(points))
-    # Into the unit cube about the origin, before anything is rounded to float32. A power of two rounds nothing.
+    # Into the unit cube around the origin, before anything is rounded to float32. Scaling by a power of two is exact.
     low, high = points.min(axis=0), points.max(axis=0)
     middle = low / 2 + high / 2
     exponent = -int(np.frexp((high / 2 - low / 2).max())[1])
@@ -174,12 +174,12 @@ def save_png(path: str | os.PathLike[str], frame: ArrayLike, palette: ArrayLike)
 
 
 def _array(name: str, value: ArrayLike, kinds: str, what: str, shape: tuple[int | str, ...]) -> NDArray[Any]:
-    """The array of a value, if its type and shape are right. A name in `shape` stands for any length."""
+    """Converts a value to an array, if its type and shape are right. A name in `shape` stands for any length."""
     try:
         array = np.asarray(value)
     except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name}: no array of {what}") from None
-    # An empty list is one of floats to numpy.
+    # To numpy an empty list is a list of floats.
     if array.dtype.kind not in kinds and array.size != 0:
         raise ValueError(f"{name}: {array.dtype} values, but {what} are needed")
     is_right = array.ndim == len(shape) and all(isinstance(a, str) or a == b for a, b in zip(shape, array.shape))

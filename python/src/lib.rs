@@ -1,5 +1,5 @@
-//! What `mode13h/__init__.py` calls: bytes in, bytes out. That module checks types and shapes, and moves the model into
-//! the unit cube; here values are checked.
+//! The functions that `mode13h/__init__.py` calls: bytes in, bytes out. That module checks types and shapes, and moves
+//! the model into the unit cube; this one checks values.
 
 use mode13h::Angle;
 use mode13h::export::{Picture, PixelShape, Png};
@@ -16,14 +16,14 @@ use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-/// From where the model is seen.
+/// Where the model is seen from.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct View {
-    /// Towards the eye; without one from the front, a little from the right and above.
+    /// The direction towards the eye; by default the view is from the front, a little from the right and above.
     direction: Option<[f64; 3]>,
     up: [f64; 3],
-    /// The eye; without one where the model fills the picture.
+    /// The eye; by default where the model fills the picture.
     eye: Option<[f64; 3]>,
     target: [f64; 3],
     field_of_view: f64,
@@ -43,7 +43,7 @@ struct Look {
 /// A palette.
 #[derive(FromPyObject)]
 enum Colors {
-    /// The name of one that the engine has.
+    /// The name of a built-in one.
     Name(String),
     /// 256 times red, green and blue.
     Bytes(Vec<u8>),
@@ -60,7 +60,7 @@ fn points(bytes: &[u8]) -> Vec<Vec3> {
     numbers.as_chunks::<3>().0.iter().map(|point| Vec3::from_array(*point)).collect()
 }
 
-/// A direction of any length, scaled to one of 1 to √3, of which no square overflows or vanishes.
+/// A direction of any length, scaled to a length of 1 to √3, so that no square overflows or vanishes.
 fn scaled(name: &str, direction: [f64; 3]) -> PyResult<Vec3> {
     let longest = direction.iter().fold(0.0_f64, |longest, number| longest.max(number.abs()));
     if !direction.iter().all(|number| number.is_finite()) {
@@ -89,7 +89,7 @@ impl View {
             (None, None) => Quat::from_rotation_arc(Vec3::Y, up) * Vec3::new(0.5, 0.4, 1.0),
         };
         let towards = towards.normalize();
-        // Seen along `up`, any other direction does.
+        // If the view is along `up`, any other direction will do.
         if up.cross(towards).length_squared() < 1e-6 {
             up = towards.any_orthonormal_vector();
         }

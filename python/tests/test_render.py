@@ -25,7 +25,7 @@ CUBE_FACES = np.array(
 
 
 def torus(around: int = 24, tube: int = 12):
-    """Vertices, normals and faces, within a box about the origin of which the longest side is 1.5."""
+    """Vertices, normals and faces, within a box around the origin whose longest side is 1.5."""
     a, b = np.meshgrid(np.arange(around), np.arange(tube), indexing="ij")
     u, v = 2 * np.pi * a / around, 2 * np.pi * b / tube
     normals = np.stack([np.cos(v) * np.cos(u), np.cos(v) * np.sin(u), np.sin(v)], -1).reshape(-1, 3)
@@ -33,7 +33,7 @@ def torus(around: int = 24, tube: int = 12):
     at = lambda i, j: (i % around) * tube + j % tube
     quads = [(at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)) for i in range(around) for j in range(tube)]
     faces = np.array([face for p, q, r, s in quads for face in ((p, q, r), (p, r, s))])
-    # As the text of a model file keeps them.
+    # Rounded as in the text of a model file.
     vertices = np.round(0.5 * centres + 0.25 * normals, 8) + 0.0
     return vertices, np.round(normals, 8) + 0.0, faces
 
@@ -53,7 +53,7 @@ class Frames(unittest.TestCase):
 
     def test_the_program_writes_the_same_files(self):
         vertices, normals, faces = torus()
-        # Beside the default, with which nothing is said.
+        # Besides the default, where the argument is left out.
         shadings = [None, *typing.get_args(mode13h.Shading)]
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
@@ -88,7 +88,7 @@ class Frames(unittest.TestCase):
 
     def test_size_and_place_of_a_model_change_nothing(self):
         vertices, _, faces = torus()
-        # Ten bits behind the point, so that the sums are exact.
+        # Ten fraction bits, so that the sums are exact.
         vertices = np.round(vertices * 1024) / 1024
         frame = mode13h.render(vertices, faces)[0]
         for scale in (2.0**-1000, 2.0**-40, 2.0**40, 2.0**1000):
@@ -103,7 +103,7 @@ class Frames(unittest.TestCase):
         # (x, y, z) with y up is (x, −z, y) with z up.
         turned = (CUBE * (1, 2, 3))[:, [0, 2, 1]] * (1, -1, 1)
         z = mode13h.render(turned, CUBE_FACES, up=(0, 0, 1), shading="flat")[0]
-        # The turn rounds, so a pixel on an edge may go either way; not a hundredth of those of the edges.
+        # The turn rounds, so a pixel on an edge may go either way; fewer than a hundredth of the edges' pixels do.
         self.assertLess((y != z).sum(), 10)
         for up in ((0, 0, 1), (0, 0, -2), (1e-9, 0, 1)):
             self.assertGreater(np.count_nonzero(mode13h.render(CUBE, CUBE_FACES, direction=(0, 0, 5), up=up)[0]), 1000)

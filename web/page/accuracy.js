@@ -18,11 +18,11 @@ import { timeOf } from "./versus.js";
 /** The value of the choice that leaves shadings to the slider. */
 const SLIDER = "slider";
 
-/** Milliseconds from one telling of the figures to the next: the eye cannot read them all. */
+/** Milliseconds between two updates of the figures, as nobody can read them in every frame. */
 const TELLING = 250;
 
 /**
- * What is asked for, in a sentence's words.
+ * The setting in words, as part of a sentence.
  * @param {Setting} setting
  */
 function wishText({ maxError, shading }) {
@@ -31,14 +31,14 @@ function wishText({ maxError, shading }) {
   return shading ? `every face ${fullName(shading)}` : "whatever the scene asks for";
 }
 
-/** Colour of pixels on faces that are seen edge on, in the error map. */
+/** Colour of pixels on faces that are seen edge-on, in the error map. */
 const EDGE_ON = "#3f9ea8";
 
-/** What a byte is off by at most where light is computed at the pixel: no budget is kept more closely. */
+/** How far a byte may be off where light is computed at the pixel: no budget can be kept more closely. */
 const LIT = 0.52;
 
 /**
- * Whether the promise is kept, in words: what is beyond it is never left without them.
+ * Says in words whether the promise is kept; errors beyond the budget are always explained.
  * @param {Errors} errors
  */
 function promiseText({ max, maxError, beyond, edgeOn }) {
@@ -51,7 +51,7 @@ function promiseText({ max, maxError, beyond, edgeOn }) {
 }
 
 /**
- * Why the slider changes nothing here, or makes a frame slower, if it does; by what was measured at its marks.
+ * Why the slider changes nothing here, or makes a frame slower, if it does; judged by the measurements at its marks.
  * @param {Setting} state
  * @param {(Mark | undefined)[]} found
  */
@@ -81,12 +81,12 @@ const SLOWER = 1.08;
 
 export class Accuracy {
   /**
-   * The errors of the frame that was judged last.
+   * The errors of the last frame that was compared with the truth.
    * @type {Errors | null}
    */
   judged = null;
   /**
-   * The levels of its pixels, and what was asked.
+   * The levels of its pixels, and the question that was asked.
    * @type {{ map: Uint8Array, asked: Question } | undefined}
    */
   lastMap;
@@ -134,7 +134,7 @@ export class Accuracy {
     slider.addEventListener("pointerdown", takeUp);
   }
 
-  /** Shows what is set. The thumb stays where it is if that is no stop of the slider. */
+  /** Shows the setting. The thumb stays where it is if the setting is not a stop of the slider. */
   follow() {
     const { state } = this.page;
     const slider = element("accuracy");
@@ -148,7 +148,7 @@ export class Accuracy {
   }
 
   /**
-   * Tells the time that the picture takes.
+   * Shows the time that the picture takes.
    * @param {number} now
    */
   tell(now) {
@@ -168,7 +168,7 @@ export class Accuracy {
   }
 
   /**
-   * Tells what the engine counted of a frame.
+   * Shows the engine's counts for a frame.
    * @param {Counts} counts
    */
   counts({ shares, shading, lit, pixels }) {
@@ -188,7 +188,7 @@ export class Accuracy {
     setText(element("lit"), `Light computed ${group(lit)} times for ${group(pixels)} pixels drawn.`);
   }
 
-  /** Asks the worker for the errors of the present frame, if it is idle. Returns what was asked. */
+  /** Asks the worker for the errors of the present frame, if it is idle. Returns the question. */
   async judge() {
     if (this.#isAsking) return null;
     const asked = this.page.question();
@@ -209,7 +209,7 @@ export class Accuracy {
     return asked;
   }
 
-  /** Forgets the errors of another scene. */
+  /** Forgets the errors of the previous scene. */
   forget() {
     this.judged = null;
   }
@@ -223,7 +223,7 @@ export class Accuracy {
     const { engine, state } = this.page;
     const { toml, seconds, pose } = state;
     setText(element("found"), "Measuring …");
-    // A scene of its own, so that the picture goes on.
+    // A separate scene, so that the picture is not disturbed.
     const scene = engine.open(toml);
     /** @type {Map<number, number | null>} */
     const times = new Map();
@@ -251,7 +251,7 @@ export class Accuracy {
   }
 }
 
-/** Laps of each stop that a search looks at. */
+/** Number of laps that a search times at each stop. */
 const LAPS_OF_SEARCH = 16;
 
 /**

@@ -1,10 +1,10 @@
 // @ts-check
-// The page's side of the worker: questions with promises. Of questions of one kind only the last waits.
+// The page's side of the worker: questions with promises. Only the last question of each kind is kept waiting.
 
 /** @import { Question } from "./types.d.ts" */
 
 /**
- * A question that was asked, or waits for that.
+ * A question that was asked, or waits to be asked.
  * @typedef {object} Waiting
  * @property {string} kind
  * @property {Question} question

@@ -1,7 +1,7 @@
 // @ts-check
-// The beginning: unpacks what is packed, and runs it.
+// The start: unpacks the packed parts, and runs them.
 
-/** The parts that are packed in this page. */
+/** The parts packed into this page. */
 async function unpack() {
   const packed = /** @type {HTMLElement} */ (document.getElementById("packed"));
   const { body } = await fetch(`data:application/gzip;base64,${(packed.textContent ?? "").trim()}`);

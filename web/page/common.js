@@ -1,5 +1,5 @@
 // @ts-check
-// What page and worker share: numbers, and what an error says.
+// Shared by page and worker: numbers, and the messages of errors.
 
 /**
  * @param {number} number
@@ -9,13 +9,13 @@
 export const clamp = (number, low, high) => Math.min(Math.max(number, low), high);
 
 /**
- * A number with its thousands apart.
+ * A number with its thousands separated.
  * @param {number} number
  */
 export const group = (number) => number.toLocaleString("en");
 
 /**
- * What an error says.
+ * The message of an error.
  * @param {unknown} error
  */
 export const messageOf = (error) => (error instanceof Error ? error.message : String(error));

@@ -1,5 +1,5 @@
 // @ts-check
-// The chart: what settings take and how far off they are, and where the present one is among them.
+// The chart: the time and the error of each setting, with the present one marked.
 
 import { drawChart, markEfficient } from "../../lab/src/cost/report/shared/chart.js";
 import { element, setText } from "./elements.js";
@@ -16,7 +16,7 @@ import { msText, Stopwatch } from "./stopwatch.js";
 /** Laps of a setting in each turn, and turns of all settings: enough for the first, while the browser still compiles, to leave. */
 const LAPS_A_TURN = 5;
 const TURNS = 12;
-/** Milliseconds after which a new scene's curve is measured: first its picture. */
+/** Milliseconds after which a new scene's curve is measured; its picture comes first. */
 const SETTLING = 400;
 
 export class Curve {
@@ -25,7 +25,7 @@ export class Curve {
    * @type {Map<string, { settings: Setting, watch: Stopwatch, judged?: Omit<Mark, "ms" | "isRedrawn"> }>}
    */
   #points = new Map();
-  /** Counts the measurements: an older one ends when a newer begins. */
+  /** Number of the current measurement: an older one ends when a newer begins. */
   #number = 0;
   #timer = 0;
 
@@ -46,7 +46,7 @@ export class Curve {
   }
 
   /**
-   * What is known of a setting: milliseconds, errors, counts; undefined as long as nothing is.
+   * What is known about a setting: milliseconds, errors, counts; undefined if nothing is yet.
    * @param {Setting} settings
    * @returns {Mark | undefined}
    */
@@ -65,14 +65,14 @@ export class Curve {
   }
 
   /**
-   * Measures settings in turn, so that what else the machine does meets all of them.
+   * Measures settings in turn, so that other load on the machine affects all of them.
    * @param {Setting[]} settings
    * @param {(part: number) => void} onProgress
    */
   async #measure(settings, onProgress = () => {}) {
     const number = ++this.#number;
     const question = this.page.question();
-    // A moving scene is measured where its picture is taken: at first there may be nothing to see.
+    // A moving scene is measured at the moment of its picture: at time 0 there may be nothing to see.
     if (this.page.state.playing) question.seconds = this.page.scene.about.picture;
     const watches = settings.map(() => new Stopwatch());
     const all = TURNS * settings.length;
@@ -90,7 +90,7 @@ export class Curve {
     }
   }
 
-  /** Draws the chart. What is not redrawn takes no time, and is not on it. */
+  /** Draws the chart. A frame that is not redrawn takes no time, and is not on it. */
   draw() {
     const { state, left, accuracy } = this.page;
     const judged = left?.isRedrawn ? accuracy?.judged : null;
@@ -101,7 +101,7 @@ export class Curve {
     for (const [lines, { settings, watch, judged }] of this.#points) {
       if (!watch.isRedrawn || !watch.ms || !judged) continue;
       const point = this.#point(lines, settings, watch.ms, judged.rms);
-      // The name of the present setting stands at the present point.
+      // The present setting's name is shown at the present point.
       points.push(now && lines === present ? { ...point, name: "" } : point);
     }
     if (now) points.push({ ...now, kind: "now", name: `${this.#name(state)}, now` });

@@ -4,7 +4,7 @@
 /** @import { Elements } from "./types.d.ts" */
 
 /**
- * The element of an id.
+ * The element with an id.
  * @template {keyof Elements} Id
  * @param {Id} id
  * @returns {Elements[Id]}
@@ -25,7 +25,7 @@ export function make(name, properties = {}, text) {
 }
 
 /**
- * Sets a text where it differs, so that a selection in it stays.
+ * Sets a text only if it differs, so that a selection in it stays.
  * @param {Element} element
  * @param {string} text
  */
@@ -61,7 +61,7 @@ export function keyed(parent, items, keyOf, create, update) {
 }
 
 /**
- * Shows what is wrong above the page; nothing hides it.
+ * Shows an error above the page, where nothing hides it.
  * @param {string} message
  */
 export function showTrouble(message) {

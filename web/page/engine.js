@@ -7,13 +7,13 @@ export const WIDTH = 320;
 export const HEIGHT = 200;
 export const PIXELS = WIDTH * HEIGHT;
 const STANDARDS = ["gouraud", "gouraud-perspective", "gouraud-unrounded", "lit"];
-/** Frames a second of a scene, as in the program's films. */
+/** Frames per second of a scene, as in the program's animations. */
 export const RATE = 35;
 
 /** The pose with which every picture begins: turn and tilt in radians, and the enlargement. */
 export const FIRST_POSE = Object.freeze(/** @type {Pose} */ ({ turn: 0, tilt: 0, zoom: 1 }));
 
-/** The instance has trapped. Another is in its place, with the files that it had. */
+/** The instance has trapped. Another has replaced it, with the same files. */
 export class EngineStopped extends Error {}
 
 export class Engine {
@@ -24,7 +24,7 @@ export class Engine {
   #files = new Map();
   /** @type {Exports} */
   #exports = /** @type {any} */ (null);
-  /** Counts the instances: a scene that an earlier one opened is opened again. */
+  /** Counts the instances: a scene opened by an earlier one is opened again. */
   generation = 0;
 
   /** @param {WebAssembly.Module} module */
@@ -48,7 +48,7 @@ export class Engine {
   }
 
   /**
-   * Calls an export. What it answers is then `text()`, `json()` or `bytes()`.
+   * Calls an export. Its answer is then in `text()`, `json()` or `bytes()`.
    * @param {string} name
    * @param {number[]} numbers
    */
@@ -72,7 +72,7 @@ export class Engine {
   }
 
   /**
-   * Calls an export that returns whether it could.
+   * Calls an export that returns whether it succeeded.
    * @param {string} name
    * @param {number[]} numbers
    */
@@ -101,7 +101,7 @@ export class Engine {
   }
 
   /**
-   * Makes the contents of `files`, a Map from name to bytes, what scenes may name.
+   * Replaces the files that scenes may name with the contents of `files`, a Map from name to bytes.
    * @param {Map<string, Uint8Array>} files
    */
   setFiles(files) {
@@ -124,7 +124,7 @@ export class Engine {
   }
 
   /**
-   * Opens a scene. An error has `line` and `column`, counted from 1, where it has a place.
+   * Opens a scene. An error has `line` and `column`, counted from 1, if it has a position.
    * @param {string} toml
    */
   open(toml) {
@@ -217,7 +217,7 @@ export class Scene {
   }
 
   /**
-   * Moves it to a time in seconds, in a pose.
+   * Moves the scene to a time in seconds, seen in a pose.
    * @param {number} seconds
    * @param {Pose} pose
    */
@@ -227,7 +227,7 @@ export class Scene {
   }
 
   /**
-   * Draws a frame, `again` even where nothing has changed.
+   * Draws a frame; with `again` even if nothing has changed.
    * @param {boolean} again
    */
   draw(again = false) {
@@ -240,7 +240,7 @@ export class Scene {
     return { width: WIDTH, height: HEIGHT, bytes: bytes.subarray(0, PIXELS), palette: bytes.subarray(PIXELS) };
   }
 
-  /** What was drawn last. */
+  /** The last frame. */
   frame() {
     this.#ask("frame");
     return this.#picture();
@@ -285,7 +285,7 @@ export class Scene {
   }
 
   /**
-   * Adds a frame to a film of one round. After the last one: the GIF file.
+   * Adds a frame to an animation of one round. After the last one, returns the GIF file.
    * @param {number} number
    * @param {number} frames
    */
@@ -295,7 +295,7 @@ export class Scene {
   }
 
   /**
-   * A frame by its number, of 35 a second.
+   * A frame by its number, at 35 a second.
    * @param {{ frame?: number, pose?: Pose } & Settings} settings
    */
   render({ frame = 0, pose = FIRST_POSE, ...settings } = {}) {
@@ -315,7 +315,7 @@ export class Scene {
   }
 
   /**
-   * The truth at the moment that is shown.
+   * The truth at the moment shown.
    * @param {string} standard
    */
   truth(standard = "lit") {

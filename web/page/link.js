@@ -1,5 +1,5 @@
 // @ts-check
-// The link: what stands behind # holds scene, moment, pose, shading, budget, effects and what is beside.
+// The link: the part after # holds scene, moment, pose, shading, budget, effects and the other side's setting.
 
 import { HEIGHT, WIDTH } from "./engine.js";
 
@@ -22,7 +22,7 @@ async function unpackText(packed) {
 }
 
 /**
- * The link of a state. Texts of scenes that are not shipped go with it; files do not.
+ * The link of a state. It includes the text of a scene that is not shipped, but no files.
  * @param {State} state
  * @param {Shipped[]} shipped
  */
@@ -43,7 +43,7 @@ export async function linkOf(state, shipped) {
 }
 
 /**
- * The state that a link holds; null where it is no link of this kind. Numbers out of range are left out.
+ * The state in a link; null if the link is not of this kind. Numbers out of range are left out.
  * @param {string} hash
  * @param {Shipped[]} shipped
  * @returns {Promise<Partial<State> & { name: string, toml: string } | null>}

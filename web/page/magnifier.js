@@ -1,5 +1,5 @@
 // @ts-check
-// The magnifier: the pixels about the chosen one, and the account that it gives of itself.
+// The magnifier: the pixels around the chosen one, and the explanation of its byte.
 
 import { element, make, setText } from "./elements.js";
 import { HEIGHT, WIDTH } from "./engine.js";
@@ -17,7 +17,7 @@ export class Magnifier {
   #parts;
   #isSeen = false;
   /**
-   * Where it is before a pixel is chosen.
+   * The pixel shown before one is chosen.
    * @type {Pixel}
    */
   #start = { x: WIDTH / 2, y: HEIGHT / 2 };
@@ -49,7 +49,7 @@ export class Magnifier {
   }
 
   /**
-   * Follows the picture while it is in the window.
+   * Follows the picture while the magnifier is in the window.
    * @param {Scene} scene
    * @param {Picture} frame
    */
@@ -60,7 +60,7 @@ export class Magnifier {
   }
 
   /**
-   * The chosen pixel or, before one is chosen, the nearest to the middle that shows an object.
+   * The chosen pixel or, before one is chosen, the pixel nearest to the middle that shows an object.
    * @returns {Pixel}
    */
   get at() {
@@ -71,7 +71,7 @@ export class Magnifier {
   #first() {
     const { engine, accuracy } = this.page;
     const map = accuracy.lastMap?.map;
-    // Levels of errors come first; where there are none, no object is seen.
+    // Levels of errors come first; pixels without one show no object.
     if (!map) return this.#start;
     /** @param {Pixel} pixel */
     const shows = ({ x, y }) => map[y * WIDTH + x] < engine.levels.length;
@@ -92,7 +92,7 @@ export class Magnifier {
    * @param {Account} account
    */
   show(pixel, frame, account) {
-    // While the picture moves there would be no end to what is announced.
+    // While the picture moves, screen readers would announce it without end.
     this.#parts.head.setAttribute("aria-live", this.page.state.playing ? "off" : "polite");
     this.#draw(pixel, frame, account);
     this.#say(account);
@@ -137,7 +137,7 @@ export class Magnifier {
     context.strokeRect((columns >> 1) * zoom - 1, (rows >> 1) * zoom - 1, zoom + 1, zoom + 1);
   }
 
-  /** The account's elements. They are made once, so that what is open stays open, and what has the focus keeps it. */
+  /** The elements of the explanation. They are made once, so that open ones stay open and the focus is kept. */
   #build() {
     /** @param {string} name */
     const register = (name) => {
@@ -156,7 +156,7 @@ export class Magnifier {
     parts.head.append(parts.swatch, parts.name, parts.color);
     parts.registers.append(...cells.map(({ box }) => box));
     all.append(make("summary", {}, "Full details"), parts.text);
-    // What opens stands above what comes and goes with the pixel, so that it does not move under a press.
+    // Parts that can be opened are above those that come and go with the pixel, so that they do not move under a press.
     element("account").replaceChildren(parts.head, parts.face, all, parts.off, parts.exact, parts.registers);
     return parts;
   }

@@ -1,15 +1,15 @@
 // @ts-check
-// A small picture in the corner: there while the large one is out of the window, and something that acts on it is in it.
+// A small picture in the corner, shown while the large one is out of view but a control that changes it is in view.
 
 import { element } from "./elements.js";
 
-/** What acts on the picture. */
+/** The parts of the page that change the picture. */
 const ACTS = "#panel, #pixel, #scenes, #plan";
 
 export class MiniPicture {
   #isOut = false;
   /**
-   * The parts that act on the picture and are in the window.
+   * Those of these parts that are in the window.
    * @type {Set<Element>}
    */
   #acting = new Set();
@@ -35,7 +35,7 @@ export class MiniPicture {
     const isMini = this.#isOut && this.isSeen;
     const [holder, bezel] = [element("holder"), element("bezel")];
     if (bezel.classList.contains("mini") === isMini) return;
-    // The place that the picture leaves stays as high as it was.
+    // The space that the picture leaves keeps its height.
     holder.style.height = isMini ? `${holder.offsetHeight}px` : "";
     bezel.classList.toggle("mini", isMini);
   }

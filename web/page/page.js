@@ -27,7 +27,7 @@ import { besideSetting, Versus } from "./versus.js";
  * @import { Frame, Parts, Pixel, Question, Settings, State } from "./types.d.ts"
  */
 
-/** Milliseconds in which the divider moves by itself. */
+/** Milliseconds for which the divider moves by itself. */
 const SWEEP = 4500;
 
 export class Page {
@@ -47,7 +47,7 @@ export class Page {
   /** Counts the changes of the files that scenes may name. */
   version = 0;
   /**
-   * The link that was written last.
+   * The last link written.
    * @type {string | undefined}
    */
   written;
@@ -60,7 +60,7 @@ export class Page {
   #linkTimer;
   #turn = 0;
   /**
-   * What is wrong, by its cause.
+   * Error messages, by cause.
    * @type {Map<string, string>}
    */
   #troubles = new Map();
@@ -69,13 +69,13 @@ export class Page {
   #isAskingExact = false;
   #isStale = true;
   /**
-   * When the divider began to move by itself; null once it has, or where nothing should move.
+   * When the divider began to move by itself; null once it has moved, or if nothing should move.
    * @type {number | null}
    */
   #swept = isStill() ? null : 0;
-  /** While the error map covers the picture. */
+  /** True while the error map covers the picture. */
   #showsErrors = false;
-  /** Whether the last picture could be drawn: only then is it timed. */
+  /** Whether the last picture could be drawn; only then is it timed. */
   #isDrawn = false;
 
   /**
@@ -141,7 +141,7 @@ export class Page {
     this.#offerTheme();
   }
 
-  /** Light or dark, as the system has it until one is chosen; that is kept. */
+  /** Light or dark: the system's setting until the user chooses one, which is stored. */
   #offerTheme() {
     const root = document.documentElement;
     const button = element("theme");
@@ -155,7 +155,7 @@ export class Page {
       try {
         localStorage.setItem("theme", theme);
       } catch {
-        // A page from a disk may have no storage: then the choice lasts as long as the page.
+        // A page opened from disk may have no storage: then the choice lasts as long as the page.
       }
     });
     tell();
@@ -190,14 +190,14 @@ export class Page {
     return { ...settingOf(this.state), effects: this.state.effects };
   }
 
-  /** What the worker has to know of the present frame. */
+  /** The data of the present frame that the worker needs. */
   question() {
     const { toml, seconds, pose } = this.state;
     return { toml, version: this.version, seconds, pose, settings: this.settings() };
   }
 
   /**
-   * Asks the worker; what goes wrong is said, unless another scene has been opened since.
+   * Asks the worker; an error is shown, unless another scene has been opened since.
    * @param {string} kind
    * @param {Question} question
    * @param {(part: number) => void} [onProgress]
@@ -221,13 +221,13 @@ export class Page {
     this.background.setFiles(files);
   }
 
-  /** Files that were dropped and that the scene names: no link carries them. */
+  /** Dropped files that the scene names; links do not contain them. */
   namedFiles() {
     return [...this.#files.keys()].filter((name) => this.state.toml.includes(name));
   }
 
   /**
-   * Opens a scene; an error leaves the one that is shown.
+   * Opens a scene; after an error the present one stays.
    * @param {string} toml
    * @param {string} name
    * @param {boolean} keepsMoment
@@ -238,7 +238,7 @@ export class Page {
     this.other?.free();
     this.scene = scene;
     this.other = null;
-    // It begins where the scene shows what it is about.
+    // Starts at the moment that shows what the scene is about.
     const start = { seconds: scene.about.picture, pose: FIRST_POSE, pixel: null, effects: {} };
     this.accuracy.forget();
     this.plan.forget();
@@ -272,7 +272,7 @@ export class Page {
     element("first-pose").hidden = turn === FIRST_POSE.turn && tilt === FIRST_POSE.tilt && zoom === FIRST_POSE.zoom;
     element("beside").value = state.beside;
     element("screen").classList.toggle("divided", Boolean(state.beside));
-    // At once: what is told with the times waits for them.
+    // Shown at once; figures that are shown with the times wait for them.
     this.versus.compare();
     this.moveDivider(state.divider);
     this.#isStale = true;
@@ -281,17 +281,17 @@ export class Page {
   }
 
   /**
-   * Stops at a pixel, and shows its account beside the picture.
+   * Stops at a pixel, and shows its explanation beside the picture.
    * @param {Pixel} pixel
    */
   #choosePixel(pixel) {
     this.choose({ pixel, playing: false });
-    // Beside the picture no farther than it must be, so that the picture stays whole; under it from its beginning.
+    // Beside the picture, scroll only as far as needed, to keep the picture in view; below it, scroll to the start.
     const block = matchMedia("(min-width: 60rem)").matches ? "nearest" : "start";
     element("pixel").scrollIntoView({ behavior: isStill() ? "auto" : "smooth", block });
   }
 
-  /** Has the picture drawn again. */
+  /** Requests that the picture be drawn again. */
   redraw() {
     this.#isStale = true;
   }
@@ -317,7 +317,7 @@ export class Page {
   }
 
   /**
-   * Takes on the state of a link.
+   * Applies the state of a link.
    * @param {string} hash
    */
   async follow(hash) {
@@ -331,7 +331,7 @@ export class Page {
   }
 
   /**
-   * Says what is wrong, of one cause; without a message that cause is gone. The last one is shown.
+   * Sets the error message of one cause, or removes it if there is none. The last one is shown.
    * @param {string} cause
    * @param {string} message
    */
@@ -365,14 +365,14 @@ export class Page {
       this.#sweep(now);
       const { isSeen } = this.mini;
       if (state.playing && isSeen) this.#store.pass((state.seconds + step) % this.scene.about.duration);
-      // Nobody looks at what is out of the window; a change is drawn there as well.
+      // Out of view only changes are drawn, not motion.
       if ((state.playing && isSeen) || this.#isStale) this.#show(now);
       if (this.#isDrawn && isSeen) this.#time();
       this.accuracy.tell(now);
       this.#stops = 0;
     } catch (error) {
       this.#isDrawn = false;
-      // One stop may be chance; a scene that stops the engine again is left.
+      // A single trap may be chance; a scene that traps the engine again is given up.
       if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
       this.trouble("picture", messageOf(error));
       if (!(error instanceof EngineStopped)) this.choose({ playing: false });
@@ -381,7 +381,7 @@ export class Page {
   }
 
   /**
-   * Moves the divider to and fro once, so that nobody misses it.
+   * Moves the divider back and forth once, so that nobody misses it.
    * @param {number} now
    */
   #sweep(now) {
@@ -417,7 +417,7 @@ export class Page {
     this.#judge();
   }
 
-  /** Takes laps of what is shown: of one picture in each frame while they move, and until they are settled where they stand. */
+  /** Takes laps of the pictures: of one per frame while they move; of still ones until they are settled. */
   #time() {
     const { seconds, pose, playing } = this.state;
     const sides = [{ watch: this.left, scene: this.scene }];
@@ -428,12 +428,12 @@ export class Page {
     }
   }
 
-  /** Whether the engine draws what is beside the picture. */
+  /** Whether the engine draws the other side of the divider. */
   #isBesideDrawn() {
     return this.state.beside && this.state.beside !== "truth";
   }
 
-  /** Has the frame compared with the truth. Of a picture that stands the last word is its own. */
+  /** Has the frame compared with the truth. For a still picture the final figures are its own. */
   async #judge() {
     const asked = await this.accuracy.judge();
     if (asked && JSON.stringify(asked) !== JSON.stringify(this.question()) && !this.state.playing) this.#isStale = true;
@@ -477,7 +477,7 @@ export class Page {
 }
 
 /**
- * Begins, with what is packed in the page.
+ * Starts the page from its packed parts.
  * @param {Parts} parts
  */
 export async function begin({ wasm, worker }) {

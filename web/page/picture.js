@@ -1,5 +1,5 @@
 // @ts-check
-// A canvas that shows bytes by a palette, and what hands do with the picture: turn, tilt, enlarge, choose a pixel.
+// A canvas that shows bytes through a palette, and the gestures on the picture: turn, tilt, zoom, choose a pixel.
 
 import { clamp } from "./common.js";
 import { HEIGHT, PIXELS, WIDTH } from "./engine.js";
@@ -49,23 +49,23 @@ export class PalettedCanvas {
   }
 }
 
-/** Pixels of the screen that a pointer may move and still choose a pixel. */
+/** Screen pixels that a pointer may move and still choose a pixel. */
 const STILL = 5;
-/** Radians for a pixel of the screen, and for a key. */
+/** Radians per screen pixel, and per key press. */
 const TURN = 0.008;
 const KEY_TURN = Math.PI / 24;
 
 /**
- * Where arrow keys lead.
+ * The directions of the arrow keys.
  * @type {Record<string, [number, number]>}
  */
 export const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** Enlargement for a step of the wheel. */
+/** Enlargement for one step of the wheel. */
 const WHEEL = 0.0015;
 
 /**
- * What is called for what hands do.
+ * The callbacks for gestures.
  * @typedef {object} Hands
  * @property {(turn: number, tilt: number) => void} turn
  * @property {(factor: number) => void} zoom
@@ -75,14 +75,14 @@ const WHEEL = 0.0015;
  */
 
 /**
- * What hands do with the picture.
+ * Connects the gestures on the picture.
  * @param {PalettedCanvas} canvas
  * @param {Hands} on
  */
 export function handle(canvas, on) {
   const element = canvas.canvas;
   /**
-   * Pointers that are down, by their numbers: where they were last.
+   * Pointers that are down, by their ids, with their last positions.
    * @type {Map<number, { x: number, y: number }>}
    */
   const down = new Map();
@@ -106,7 +106,7 @@ export function handle(canvas, on) {
     from.moved = true;
     [last.x, last.y] = [event.clientX, event.clientY];
     if (down.size === 2) on.zoom(spread() / Math.max(before, 1));
-    // Up and down a finger scrolls the page.
+    // A finger that moves up or down scrolls the page.
     else on.turn(dx * TURN, event.pointerType === "touch" ? 0 : dy * TURN);
   });
   element.addEventListener("pointerup", (event) => {
@@ -114,7 +114,7 @@ export function handle(canvas, on) {
     down.delete(event.pointerId);
   });
   element.addEventListener("pointercancel", (event) => down.delete(event.pointerId));
-  // By the wheel alone the page scrolls: over so large a picture it would stick.
+  // The wheel alone scrolls the page, which would otherwise get stuck over so large a picture.
   element.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && document.activeElement !== element) return;
     event.preventDefault();

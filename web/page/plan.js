@@ -11,7 +11,7 @@ import { median, msText, Stopwatch } from "./stopwatch.js";
  * @import { PlanRow, Settings } from "./types.d.ts"
  */
 
-/** Effects that are chosen by another setting, or that keep triangles inside what the raster can draw. */
+/** Effects that another setting chooses, or that keep triangles within what the rasterizer can draw. */
 const FIXED = ["transform", "hidden-surfaces", "near-clipping", "screen-clipping"];
 
 /** Why a budget draws faces by a technique, in plain words. */
@@ -26,7 +26,7 @@ const WHY = new Map([
 ]);
 
 /**
- * A reason in plain words: where the engine counts faces by technique, a sentence for each.
+ * A reason in plain words; if the engine counts faces by technique, a sentence for each.
  * @param {string} reason
  */
 function plainReason(reason) {
@@ -37,7 +37,7 @@ function plainReason(reason) {
   return `${parts.join(" ")} ${group(Number(counted[2]))} not seen.`;
 }
 
-/** How often each effect's frames are timed. */
+/** The number of times that each effect's frames are timed. */
 const ROUNDS_OF_PRICE = 15;
 
 export class PlanTable {
@@ -110,7 +110,7 @@ export class PlanTable {
   }
 
   /**
-   * A price in words: null for what cannot be switched, 0 for what is within the noise.
+   * A price in words: null if the effect cannot be switched, 0 if the price is within the noise.
    * @param {number | null | undefined} price
    * @param {boolean} on
    */
@@ -119,12 +119,12 @@ export class PlanTable {
     return on ? msText(price) : `(${msText(price)})`;
   }
 
-  /** Measures how much longer a frame is with each effect than without: the two drawn in turn. */
+  /** Measures how much longer a frame takes with each effect than without, drawing the two in turn. */
   async measure() {
     const button = element("price");
     const { engine, state } = this.page;
     const { toml } = state;
-    // A scene of its own, so that the picture goes on.
+    // A separate scene, so that the picture is not disturbed.
     const scene = engine.open(toml);
     button.disabled = true;
     const rows = this.rows.filter((row) => row.place === Number(element("object").value || 0));
@@ -163,8 +163,8 @@ export class PlanTable {
       const [as, other] = [lap(usual), lap(switched)];
       differences.push(on ? as - other : other - as);
     }
-    // Of n differences by chance half are above 0, with a standard deviation of √n/2: what is not three times that above
-    // has no price.
+    // By chance half of n differences are above 0, with a standard deviation of √n/2: unless there are more than three
+    // times that above the half, the price is noise.
     const above = differences.filter((difference) => difference > 0).length;
     const isNoise = above <= differences.length / 2 + (3 * Math.sqrt(differences.length)) / 2;
     return isNoise ? 0 : median(differences);

@@ -1,5 +1,5 @@
 // @ts-check
-// Scenes: a picture of each that is shipped, the editor, and models that are dropped.
+// Scenes: a picture of each shipped one, the editor, and dropped models.
 
 import { group, messageOf } from "./common.js";
 import { element, isStill, make } from "./elements.js";
@@ -10,10 +10,10 @@ import { PalettedCanvas } from "./picture.js";
  * @import { SceneAbout } from "./types.d.ts"
  */
 
-/** Milliseconds without a key before the text is tried. */
+/** Milliseconds without a key press before the text is tried. */
 const PAUSE = 300;
 
-/** What files may be dropped. */
+/** The extensions of files that may be dropped. */
 const TAKEN = [".obj", ".mtl", ".png", ".toml"];
 
 export class Scenes {
@@ -32,7 +32,7 @@ export class Scenes {
     });
     this.text.addEventListener("scroll", () => (element("lines").scrollTop = this.text.scrollTop));
     const drop = element("drop");
-    // The whole page takes files, so that none that misses the mark leaves it.
+    // The whole page accepts files, so that a drop that misses its target does not leave the page.
     addEventListener("dragover", (event) => {
       event.preventDefault();
       drop.classList.add("over");
@@ -65,7 +65,7 @@ export class Scenes {
       return { card, canvas, toml };
     });
     element("gallery").replaceChildren(...cards.map(({ card }) => card));
-    // One at a time, whenever the page has nothing else to do.
+    // One at a time, whenever the page is idle.
     /** @param {() => void} work */
     const idle = (work) => ("requestIdleCallback" in globalThis ? requestIdleCallback(work) : setTimeout(work, 50));
     const next = () => {
@@ -129,7 +129,7 @@ export class Scenes {
   }
 
   /**
-   * Takes files: a scene, or a model with what it names.
+   * Accepts files: a scene, or a model with the files that it names.
    * @param {File[]} dropped
    */
   async take(dropped) {
@@ -158,7 +158,7 @@ export class Scenes {
   }
 
   /**
-   * The scene of a model that turns; in colours of its own where its materials have any.
+   * The scene of a turning model, in its own colours if its materials have any.
    * @param {string} name
    */
   #showing(name) {

@@ -1,16 +1,16 @@
 // @ts-check
-// What the page shows, and who is told when that changes.
+// What the page shows, and the views that are told of changes.
 
 import { FIRST_POSE } from "./engine.js";
 import { settingAt, stopOf } from "./stops.js";
 
 /** @import { State } from "./types.d.ts" */
 
-/** The scene of the first screen: one in which it is seen what accuracy is for. */
+/** The scene of the first screen: one that shows what accuracy is for. */
 export const FIRST_SCENE = "phong";
 
 /**
- * The first screen's state, of which the page also has a ready picture.
+ * The first screen's state, for which the page contains a picture.
  * @type {State}
  */
 export const FIRST_STATE = Object.freeze({
@@ -19,8 +19,8 @@ export const FIRST_STATE = Object.freeze({
 });
 
 /**
- * The state. It is changed by `choose` alone. Views are told of each change, and only show it: one that answers by a
- * change of its own is an error.
+ * The state, which only `choose` changes. Views are told of each change and only show it; a view that responds with a
+ * change of its own causes an error.
  */
 export class Store {
   /** @type {State} */
@@ -39,7 +39,7 @@ export class Store {
   }
 
   /**
-   * Has a view told of every change from now on.
+   * Registers a view, which is told of every change from now on.
    * @param {(state: State, before: State) => void} view
    */
   listen(view) {
@@ -61,7 +61,7 @@ export class Store {
   }
 
   /**
-   * Moves the time on as it passes. Nobody is told: what moves is drawn in each frame.
+   * Advances the time. No view is told, because moving scenes are drawn in each frame anyway.
    * @param {number} seconds
    */
   pass(seconds) {

@@ -1,5 +1,5 @@
 // @ts-check
-// The slider's stops, and the names of what they stand for.
+// The slider's stops, and the names of their settings.
 
 import { clamp } from "./common.js";
 
@@ -7,14 +7,14 @@ import { clamp } from "./common.js";
 
 /** The cheapest shading, the slider's left end on every scene. */
 export const CHEAPEST = "flat";
-/** Budgets that are measured and have a mark on the slider. */
+/** Budgets that are measured, and marked on the slider. */
 export const OCTAVES = [16, 8, 4, 2, 1, 0.5];
 /** Stop 0 is the cheapest shading. Budgets follow, from the widest to ½ shade in quarters of an octave. */
 const WIDEST = 32;
 export const LAST_STOP = 25;
 
 /**
- * What a stop stands for.
+ * The setting that a stop stands for.
  * @param {number} stop
  * @returns {Setting}
  */
@@ -82,7 +82,7 @@ export function techniqueColor(name) {
 export const errorText = (error) => error.toFixed(error < 9.995 ? 2 : error < 99.95 ? 1 : 0);
 
 /**
- * A setting's name, as short as the picture's edge takes it.
+ * A setting's name, short enough for the picture's edge.
  * @param {Setting} setting
  */
 export function settingName({ maxError, shading }) {

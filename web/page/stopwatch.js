@@ -1,12 +1,12 @@
 // @ts-check
-// The stopwatch: every time on the page, and in its worker, is taken by it.
+// The stopwatch, which takes every time on the page and in its worker.
 
 /**
  * @import { Scene } from "./engine.js"
  * @import { Lap, Pose } from "./types.d.ts"
  */
 
-/** The clock's step in milliseconds, which browsers make coarse: the least difference that it shows. */
+/** The clock's step in milliseconds, which browsers make coarse: the smallest difference between two readings. */
 export const CLOCK_STEP = (() => {
   let [step, changes, before] = [Infinity, 0, performance.now()];
   const end = before + 20;
@@ -20,14 +20,14 @@ export const CLOCK_STEP = (() => {
   return Number(step.toFixed(4));
 })();
 
-/** Milliseconds of a lap at least: the clock's step is at most a fortieth of them. */
+/** Minimum length of a lap in milliseconds: at least forty steps of the clock. */
 const LAP = Math.max(2, 40 * CLOCK_STEP);
-/** Laps that are kept, so 50 frames or more; and how many there must be before a time is shown. */
+/** Number of laps that are kept, so 50 frames or more; and how many there must be before a time is shown. */
 export const KEPT_LAPS = 50;
 const FIRST_LAPS = 5;
-/** From a moment to the next, in seconds: what moves is computed again in every frame of a lap. */
+/** Seconds from one moment to the next: a moving scene is computed again in every frame of a lap. */
 const NEXT_MOMENT = 1 / 70;
-/** Part by which the halves of the laps may differ once they are settled, and laps after which they are so in any case. */
+/** Share by which the two halves of settled laps may differ, and the number of laps that count as settled anyway. */
 const STEADY = 0.04;
 const PATIENCE = 250;
 
@@ -42,7 +42,7 @@ const ascending = (numbers) => [...numbers].sort((a, b) => a - b);
 /** @param {number[]} numbers */
 export const median = (numbers) => ascending(numbers)[numbers.length >> 1];
 /**
- * What the rest of the machine adds is on top: a quarter of the laps had little of it.
+ * Other load on the machine only adds time: a quarter of the laps had little of it.
  * @param {number[]} numbers
  */
 const lowerQuartile = (numbers) => ascending(numbers)[numbers.length >> 2];
@@ -52,12 +52,12 @@ export class Stopwatch {
   #laps = [];
   /** Laps since the picture changed. */
   #fresh = 0;
-  /** Whether the scene moves and is redrawn: where nothing changes the engine leaves the frame as it is. */
+  /** Whether the scene moves and is redrawn: if nothing changes, the engine leaves the frame as it is. */
   isRedrawn = true;
 
   /**
-   * Draws a scene again and again, about a moment and at last in it. Returns milliseconds a frame, and whether the scene
-   * is redrawn from one moment to the next without being asked for it.
+   * Draws a scene repeatedly, around a moment and finally at it. Returns milliseconds per frame, and whether the scene
+   * is redrawn from one moment to the next without being forced.
    * @param {Scene} scene
    * @param {number} seconds
    * @param {Pose} pose
@@ -97,27 +97,27 @@ export class Stopwatch {
       this.#fresh++;
       this.isRedrawn = isRedrawn;
     }
-    // What was taken while the browser still compiled leaves in time.
+    // Laps taken while the browser was still compiling are dropped in time.
     this.#laps.splice(0, this.#laps.length - KEPT_LAPS);
   }
 
-  /** Forgets what was timed of another picture. */
+  /** Forgets the laps of the previous picture. */
   reset() {
     this.#laps = [];
     this.renew();
   }
 
-  /** The picture is another, but nearly the same: its laps are not settled any more. */
+  /** The picture has changed slightly: its laps are no longer settled. */
   renew() {
     this.#fresh = 0;
   }
 
-  /** Milliseconds a frame; null while there are too few laps. */
+  /** Milliseconds per frame; null while there are too few laps. */
   get ms() {
     return this.#laps.length < FIRST_LAPS ? null : lowerQuartile(this.#laps);
   }
 
-  /** Whether more laps would say nothing new: as many as are kept, the later half as long as the one before. */
+  /** Whether more laps would add nothing: there are as many as are kept, and their two halves agree. */
   get isSettled() {
     if (this.#fresh < KEPT_LAPS) return false;
     const half = KEPT_LAPS / 2;

@@ -1,5 +1,5 @@
 // @ts-check
-// What accuracy costs, at a glance: the times of the two pictures and their ratio, and two bars, time and error.
+// What accuracy costs, at a glance: the times of the two pictures, their ratio, and two bars for time and error.
 
 import { element, setText } from "./elements.js";
 import { settingLines } from "./engine.js";
@@ -11,11 +11,11 @@ import { msText } from "./stopwatch.js";
  * @import { Mark, Setting } from "./types.d.ts"
  */
 
-/** Times that differ by no more than this part count as one. */
+/** Times that differ by no more than this share count as equal. */
 const SAME = 0.05;
 
 /**
- * How many times as long the slower of two takes, with an arrow to it.
+ * How many times as long the slower of two takes, with an arrow that points to it.
  * @param {number} left
  * @param {number} right
  */
@@ -35,7 +35,7 @@ export class Versus {
   }
 
   /**
-   * Tells the times; `marks` is what was measured at the slider's marks, undefined where nothing was yet.
+   * Shows the times; `marks` holds the measurements at the slider's marks, undefined where there is none yet.
    * @param {(Mark | undefined)[]} marks
    */
   tell(marks) {
@@ -49,7 +49,7 @@ export class Versus {
     this.#strip.classList.toggle("settling", state.playing ? left.ms === null : !left.isSettled);
   }
 
-  /** Tells the two pictures' names, their times, and the ratio. */
+  /** Shows the two pictures' names, their times, and the ratio. */
   compare() {
     const { left, right, state } = this.page;
     const isTimed = state.beside && state.beside !== "truth";
@@ -69,7 +69,7 @@ export class Versus {
   #ratio(leftMs, rightMs) {
     const { left, state } = this.page;
     if (!left.isRedrawn) return ["", "no pixel changes, so nothing is redrawn"];
-    // Their times would differ by noise.
+    // Their times would differ only by noise.
     if (settingLines(besideSetting(state.beside)) === settingLines(settingOf(state))) return ["", "the same on both sides"];
     return ratioText(leftMs, rightMs);
   }
@@ -88,7 +88,7 @@ export class Versus {
 export const timeOf = ({ ms, isRedrawn }) => (ms === null ? "…" : isRedrawn ? msText(ms) : "not redrawn");
 
 /**
- * The settings that `beside` stands for, a kind and a value; of the truth there are none.
+ * The settings that `beside`, a kind and a value, stands for; the truth has none.
  * @param {string} beside
  * @returns {Setting}
  */

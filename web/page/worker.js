@@ -1,5 +1,5 @@
 // @ts-check
-// The worker: what takes longer than a frame. It has an engine of its own, and answers one question at a time.
+// The worker, for work that takes longer than a frame. It has its own engine, and answers one question at a time.
 
 import { messageOf } from "./common.js";
 import { Engine, RATE } from "./engine.js";
@@ -13,12 +13,12 @@ import { Stopwatch } from "./stopwatch.js";
 /** @type {Engine} */
 let engine;
 /**
- * What comes before the engine is there waits for it.
+ * Questions that arrive before the engine is ready wait for it.
  * @type {Promise<unknown>}
  */
 let ready;
 /**
- * The scene that was asked about last.
+ * The scene of the last question.
  * @type {{ key: string, scene: Scene | null }}
  */
 let known = { key: "", scene: null };
@@ -37,7 +37,7 @@ function sceneOf({ toml, version }) {
 }
 
 /**
- * How far a frame is from the truth, and what was counted of it.
+ * How far a frame is from the truth, and its counts.
  * @param {Scene} scene
  * @param {Question} question
  */
@@ -53,7 +53,7 @@ const questions = {
   /** @param {Question} question */
   judge: (question) => judge(sceneOf(question), question),
   /**
-   * Laps of one setting and, if they are asked for, its errors and counts.
+   * Laps of one setting and, if requested, its errors and counts.
    * @param {MeasureQuestion} question
    */
   measure(question) {

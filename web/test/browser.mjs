@@ -1,6 +1,6 @@
 // Drives the page in Chromium: browser.mjs PAGE.html MODE13H [FOLDER]
 //
-// MODE13H is the program: the picture that the page saves must be the file that it writes. Screenshots go to FOLDER.
+// MODE13H is the program: the pictures that the page saves must equal its files. Screenshots go to FOLDER.
 import { execFileSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -25,7 +25,7 @@ async function saved(tab, button) {
   return readFileSync(await download.path());
 }
 
-/** How the page looks to somebody: nothing sticks out, and what matters is on the first screen. */
+/** The page's layout: nothing overflows, and everything important is on the first screen. */
 async function looks(width, height, { isDark = false, isStill = false }) {
   const who = `${width} × ${height}${isDark ? ", dark" : ""}${isStill ? ", less motion" : ""}`;
   const tab = await suite.open({ width, height, isDark, isStill });
@@ -62,7 +62,7 @@ await suite.run(async () => {
   check("dragged to its right end the slider allows half a shade", (await tab.evaluate("page.state.maxError")) === 0.5, await tab.evaluate("page.state.maxError"));
   await until(tab, "page.accuracy.lastMap.asked.settings.maxError === 0.5");
   const fine = await tab.evaluate("Number(element('worst').textContent)");
-  // Half a shade, and half a shade of rounding; single pixels of faces that are seen edge on may be beyond.
+  // Half a shade, plus half a shade of rounding; single pixels of faces that are seen edge-on may exceed it.
   const rms = await tab.evaluate("Number(element('rms').textContent)");
   check("and pixels are off by no more than that and rounding, r.m.s.", rms > 0 && rms <= 1, rms);
   check("the share of each technique is shown", /lit at every pixel \d+ %/.test(await text(tab, "shares-key")), await text(tab, "shares-key"));
@@ -75,13 +75,13 @@ await suite.run(async () => {
   await until(tab, "document.querySelectorAll('#chart .chart-point.now').length === 1");
   check("the chart shows where it is", true);
 
-  // All shadings, measured on the spot.
+  // All shadings, measured on the page.
   await click(tab, "#measure");
   await until(tab, "!element('measure').disabled");
   const points = await tab.evaluate("document.querySelectorAll('#chart .chart-point.shading').length");
   check("every shading is a point of the chart", points === (await tab.evaluate("page.engine.shadings.length - 1")), points); // Flat is the budgets' left end.
 
-  // The best picture in so many milliseconds.
+  // The best picture in a given time.
   await tab.evaluate("element('limit').value = 1000");
   await click(tab, "#within button");
   await until(tab, "element('found').textContent.includes(', in ')");
@@ -169,7 +169,7 @@ await suite.run(async () => {
   await until(tab, "page.accuracy.lastMap.asked.toml === page.state.toml");
   check("a file that is missing is named", /is not on the page/.test(await tab.evaluate("(() => { try { page.engine.open('objects = [{ model = \"none.obj\" }]'); } catch (error) { return error.message; } })()")));
 
-  // A trap: the page says so, and goes on.
+  // A trap: the page reports it, and goes on.
   const trapped = await tab.evaluate("(() => { try { page.engine.call('room', 4294967295); } catch (error) { return error.message; } })()");
   check("a trap says why, and that another engine was started", /^The engine stopped at room: .*capacity overflow.* Another one was started\.$/s.test(trapped), trapped);
   await tab.evaluate("page.choose({ seconds: 0.4 })");
@@ -203,7 +203,7 @@ await suite.run(async () => {
   await until(tab, "page.left.isSettled && !element('ms').classList.contains('settling')");
   console.log(`      the teapot lit at every pixel: ${await text(tab, "ms")} each`);
 
-  // As it looks: three sizes, light, dark, with less motion.
+  // Layout: three sizes, light, dark, with less motion.
   for (const [width, height] of [[1280, 800], [390, 844], [360, 640]]) {
     for (const look of [{}, { isDark: true }, { isStill: true }]) {
       await looks(width, height, look);

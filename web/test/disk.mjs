@@ -1,6 +1,6 @@
-// The page from a disk in browsers as they are installed: disk.mjs PAGE.html BROWSER...
+// The page opened from disk in installed browsers: disk.mjs PAGE.html BROWSER...
 //
-// A copy of the page says what came of it: that the engine, its worker and the text's figures are there, and errors.
+// A copy of the page reports whether the engine, its worker and the text's figures work, and any errors.
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
@@ -10,7 +10,7 @@ import { ask } from "./elsewhere.mjs";
 const [page, ...browsers] = process.argv.slice(2);
 const folder = mkdtempSync(join(tmpdir(), "mode13h-disk-"));
 
-/** Waits for the first errors, which the worker computes, or for a message of the page. */
+/** Waits for the first error figures, which the worker computes, or for a message from the page. */
 const script = (server) => `<script>
 const wrong = [];
 addEventListener("error", ({ message }) => wrong.push(message));

@@ -1,11 +1,11 @@
-// Browsers as they are installed, without anything that drives them: a page says by itself what came of it.
+// Installed browsers, without anything that drives them: the page itself reports the outcome.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { basename, join } from "node:path";
 
-/** Removes a browser's folder. Its last processes may still write there: then it stays in the system's temporary folder. */
+/** Removes a browser's folder. If its last processes still write there, it stays in the system's temporary folder. */
 function removeProfile(profile) {
   try {
     rmSync(profile, { recursive: true, force: true, maxRetries: 10, retryDelay: 100 });
@@ -15,8 +15,8 @@ function removeProfile(profile) {
 }
 
 /**
- * Opens a page in a browser, and answers with what it sends to `/said` of a server of this computer. `open` makes the page's
- * address of the server's; `serve` answers what else is asked of the server.
+ * Opens a page in a browser, and resolves to what it sends to `/said` of a local server. `open` makes the page's address
+ * from the server's; `serve` answers all other requests.
  */
 export function ask(program, open, serve = (request, response) => response.writeHead(404).end()) {
   return new Promise((resolve) => {

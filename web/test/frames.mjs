@@ -1,5 +1,5 @@
 // The frames of `verify` in node: machines/wasm/run draws them all with and without vectors and compares their
-// hash with that of every other machine. Here the page's own module is asked for what the program writes.
+// hash with that of every other machine. This test compares the pictures of the page's own module with the program's.
 //
 //     frames.mjs MODULE.wasm MODE13H
 import { execFileSync } from "node:child_process";

@@ -1,7 +1,7 @@
-// What hands do with the page, in Chromium: hands.mjs PAGE.html
+// The page used by hand, in Chromium: hands.mjs PAGE.html
 //
-// The slider by every key at every stop; presses as long as a hand's while the picture turns; where the focus is then; the
-// banner; the pixel's account and the picture in one window.
+// The slider by every key at every stop; presses of human length while the picture turns, and the focus after them; the
+// banner; a pixel's explanation and the picture visible together.
 import { LAST_STOP, settingAt, stopOf } from "../page/stops.js";
 import { box, click, frames, openScene, scrolled, Suite, until } from "./suite.mjs";
 
@@ -45,10 +45,10 @@ async function slider(tab) {
   suite.check("and a key takes it up again, at its end too", await tab.evaluate("page.state.maxError === 0.5"));
 }
 
-/** Frames of a press: 110 ms, as long as a hand's. */
+/** Frames of a press: 110 ms, as long as a human's. */
 const PRESS = 7;
 
-/** Presses as long as a hand does, while the picture turns. */
+/** Presses as long as a human does, while the picture turns. */
 async function press(tab, selector) {
   const { x, y, width, height } = await box(tab, selector);
   await tab.mouse.move(x + width / 2, y + height / 2);
@@ -79,7 +79,7 @@ async function presses(tab) {
   await tab.evaluate("page.choose({ effects: {} })");
 }
 
-/** Frames in which everything that is told has been told again, twice. */
+/** Frames after which all displayed values have been updated twice. */
 const TOLD = 40;
 
 async function focus(tab) {
@@ -93,7 +93,7 @@ async function focus(tab) {
   suite.check("and so does the account", (await tab.evaluate("document.activeElement.tagName")) === "SUMMARY");
 }
 
-/** Where the slider changes nothing the page says why. */
+/** If the slider changes nothing, the page says why. */
 async function words(tab) {
   for (const [name, said] of [["cube", "Flat faces: already exact"], ["flash", "only the cheapest method differs"]]) {
     await openScene(tab, name);
@@ -103,7 +103,7 @@ async function words(tab) {
   }
 }
 
-/** The banner is there as long as its cause, and can be closed. */
+/** The banner stays as long as its cause, and can be closed. */
 async function banner(tab) {
   const drop = (name, text) => tab.evaluate(`page.scenes.take([new File([${JSON.stringify(text)}], ${JSON.stringify(name)})])`);
   const isThere = () => tab.evaluate("!element('trouble').hidden");
@@ -120,7 +120,7 @@ async function banner(tab) {
   suite.check("its button closes it", !(await isThere()));
 }
 
-/** A click on the picture opens the pixel's account where the picture still is; and it begins on an object. */
+/** A click on the picture opens the pixel's explanation with the picture still in view; it starts on an object. */
 async function account() {
   for (const [width, height] of [[1280, 800], [390, 844], [360, 640]]) {
     const tab = await suite.open({ width, height });
@@ -151,7 +151,7 @@ async function account() {
   }
 }
 
-/** The wheel zooms the picture that has the focus, a button leads back; the theme is kept. */
+/** The wheel zooms a focused picture, and a button resets it; the theme is stored. */
 async function pose(tab) {
   await openScene(tab, "torus");
   await tab.evaluate("scrollTo({ top: 0, behavior: 'instant' }), element('picture').focus()");
@@ -180,7 +180,7 @@ async function pose(tab) {
   await tab.evaluate("localStorage.removeItem('theme')");
 }
 
-/** Two fingers zoom the picture by as much as they part, and do nothing else; one finger up and down scrolls the page. */
+/** Two fingers zoom the picture by as much as they spread, and do nothing else; one finger up or down scrolls the page. */
 async function pinch() {
   const tab = await suite.open({ width: 390, height: 844 });
   await openScene(tab, "torus");
@@ -220,7 +220,7 @@ async function pinch() {
   await tab.context().close();
 }
 
-/** What an edited scene is called, what a link cannot carry, and what cannot be read. */
+/** The name of an edited scene, files that a link cannot contain, and files that cannot be read. */
 async function names(tab) {
   await openScene(tab, "cube");
   await tab.evaluate("(() => { const area = element('toml'); area.value += '\\n# mine'; area.dispatchEvent(new Event('input')); })()");
@@ -233,7 +233,7 @@ async function names(tab) {
   suite.check("a link says what it cannot carry", true);
 }
 
-/** The divider moves once by itself and stops in the middle; where less motion is asked for it does not. */
+/** The divider moves once by itself and stops in the middle, unless the reader asks for less motion. */
 async function sweep() {
   for (const isStill of [false, true]) {
     const tab = await suite.tab({ isStill });
@@ -248,7 +248,7 @@ async function sweep() {
     });
     await tab.goto(suite.address);
     await until(tab, "globalThis.page?.scenes");
-    /** Whether it stands for a second's frames. */
+    /** Whether it stays still for a second. */
     const stands = async () => {
       const count = await tab.evaluate("places.length");
       await frames(tab, 60);
@@ -265,7 +265,7 @@ async function sweep() {
   }
 }
 
-/** Points of the chart by keys: the chart is drawn again and again under the focus. */
+/** Points of the chart by keys, while the chart is redrawn under the focus. */
 async function chart(tab) {
   await openScene(tab, "torus");
   await tab.evaluate(`page.choose({ ...${JSON.stringify(settingAt(9))}, playing: true, beside: '' })`);

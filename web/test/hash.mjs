@@ -3,7 +3,7 @@
 //     hash.mjs FRAMES.wasm BROWSER...
 //
 // FRAMES.wasm is machines/frames, built for WebAssembly. A BROWSER is a program such as chromium or firefox-esr. It opens
-// a page of this computer, which draws the frames and says what came of it.
+// a local page, which draws the frames and reports the outcome.
 import { readFileSync } from "node:fs";
 import { basename } from "node:path";
 import { ask } from "./elsewhere.mjs";

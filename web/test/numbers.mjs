@@ -1,14 +1,14 @@
-// Whether the page's numbers are true, in Chromium: numbers.mjs PAGE.html
+// Whether the page's numbers are right, in Chromium: numbers.mjs PAGE.html
 //
-// The time that is shown against one that is taken here in place, by other means, on five scenes in three states; scenes
-// in which nothing is redrawn have none. Over all shipped scenes no error is beyond the budget without its words.
+// Compares the time shown with one measured here on the page in another way, on five scenes in three states; scenes
+// in which nothing is redrawn have none. On all shipped scenes, an error beyond the budget is always explained.
 import { frames, openScene, Suite, until } from "./suite.mjs";
 
 const suite = new Suite(process.argv[2]);
 
-/** Part by which a shown time may differ from the one measured in place. */
+/** Share by which the time shown may differ from the one measured here. */
 const NEAR = 0.15;
-/** Tries, as other programs run as well. */
+/** Number of attempts, as other programs run as well. */
 const TRIES = 6;
 const SETTINGS = [{ maxError: null, shading: "flat" }, { maxError: 4 }, { maxError: 0.5 }];
 const SCENES = [["torus", 1.2], ["teapot", 0.5], ["cone", 1.2], ["phong", 1.5], ["rgb", 1.5]];
@@ -24,7 +24,7 @@ suite.run(async () => {
 });
 
 /**
- * Milliseconds of a redraw of the picture that is shown, taken in place: the lower quartile of 40 batches, spread over
+ * Milliseconds per redraw of the picture shown, measured on the page: the lower quartile of 40 batches, spread over
  * frames as the page's own laps are. Every batch redraws two moments in turn, as an animation does.
  */
 const inPlace = (tab) => tab.evaluate(`(async () => {
@@ -55,7 +55,7 @@ async function times() {
       const accuracy = setting.maxError ? `max-error=${setting.maxError}` : `shading=${setting.shading}`;
       const found = [];
       for (let i = 0; i < TRIES && !found.at(-1)?.isNear; i++) {
-        // Opened again, because only the first times were wrong.
+        // Opened again, because an error affected only the first times.
         const tab = await suite.open({ isStill, link: state === "a link" ? `#scene=${name}&t=${seconds}&${accuracy}` : "" });
         if (state !== "a link") {
           await openScene(tab, name);
@@ -63,7 +63,7 @@ async function times() {
         }
         await until(tab, "page.left.isSettled");
         await untilSettled(tab);
-        // What turns is told all the time, so what is told last was taken together with what is taken here.
+        // While it turns, the time is updated continuously, so the last one was measured together with this one.
         const before = await shown(tab);
         const taken = await inPlace(tab);
         const told = state === "turning" ? await shown(tab) : before;
@@ -77,7 +77,7 @@ async function times() {
   }
 }
 
-/** What "Find it" says of a picture is what the panel then says of it. */
+/** "Find it" reports the same about a picture as the panel does afterwards. */
 async function search() {
   const tab = await suite.open({ link: "#scene=phong&t=1.5&max-error=4" });
   const found = [];
@@ -107,7 +107,7 @@ async function notRedrawn() {
   }
 }
 
-/** The promise, as the panel tells it: on every shipped scene at six moments of its round. */
+/** The promise as the panel states it, on every shipped scene at six moments of its round. */
 async function promise() {
   const tab = await suite.open();
   const wrong = [];

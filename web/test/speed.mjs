@@ -1,5 +1,5 @@
-// Nanoseconds a face in node, by the page's module, against the program on this machine with SSE2. It reports, and holds
-// nothing: what else the computer does decides.
+// Nanoseconds per face in node, by the page's module, against the program with SSE2 on this machine. It only reports,
+// because the result depends on the load of the machine.
 //
 //     speed.mjs MODULE.wasm MODE13H [SCENE.toml]...
 import { execFileSync } from "node:child_process";
@@ -17,7 +17,7 @@ const median = (numbers) => numbers.sort((a, b) => a - b)[numbers.length >> 1];
 /** A fine body with the faces of a scan. */
 const FINE = 'palette = "copper"\nobjects = [{ shape = "torus", subdivisions = [200, 120], spin = 1 }]\nlights = [{ sun = [0.4, 0.6, 1] }]\n';
 
-/** Nanoseconds of a frame: the median of frames timed one by one, as the program has it, of two moments in turn. */
+/** Nanoseconds per frame: the median of frames timed one by one, as in the program, at two moments in turn. */
 function time(scene, milliseconds) {
   const times = [];
   for (const begun = performance.now(); performance.now() - begun < milliseconds; ) {
@@ -32,7 +32,7 @@ function time(scene, milliseconds) {
 function measure(name, words, toml) {
   const scene = engine.open(toml);
   const [here, there] = [[], []];
-  // Compiled for speed only after a while.
+  // Warms up: the module is optimized only after a while.
   time(scene, 2000);
   for (let round = 0; round < ROUNDS; round++) {
     here.push(time(scene, 500));

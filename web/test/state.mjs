@@ -1,4 +1,4 @@
-// The state and what is told of it, in node: state.mjs
+// The state and the views told of its changes, in node: state.mjs
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { FIRST_STATE, Store } from "../page/state.js";

@@ -1,4 +1,4 @@
-// What the tests in a browser share: Debian's Chromium, driven by Playwright, and checks that are counted.
+// Shared by the tests in a browser: Debian's Chromium, driven by Playwright, and checks that are counted.
 import { existsSync } from "node:fs";
 import { resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -6,7 +6,7 @@ import { chromium } from "playwright-core";
 
 const program = process.env.CHROMIUM ?? ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
 
-/** A browser that shows a page of this disk, each time in a tab of its own that shares nothing with the others. */
+/** A browser that shows a page from disk, each time in a new tab that shares nothing with the others. */
 export class Suite {
   failures = 0;
 
@@ -33,13 +33,13 @@ export class Suite {
     process.exit(this.failures ? 1 : 0);
   }
 
-  /** A tab whose console is kept in `said`. Tests name elements as the page does, by `element(id)`. */
+  /** A tab whose console is recorded in `said`. Tests name elements as the page does, by `element(id)`. */
   async tab({ width = 1280, height = 800, isDark = false, isStill = false, javaScriptEnabled = true } = {}) {
     const context = await this.browser.newContext({
       viewport: { width, height }, isMobile: width < 500, hasTouch: width < 500, javaScriptEnabled,
       colorScheme: isDark ? "dark" : "light", reducedMotion: isStill ? "reduce" : "no-preference",
     });
-    // A bound for what hangs; a busy machine takes its time.
+    // A limit for tests that hang; a busy machine takes its time.
     context.setDefaultTimeout(180_000);
     await context.addInitScript("globalThis.element = (id) => document.getElementById(id)");
     const tab = await context.newPage();
@@ -49,7 +49,7 @@ export class Suite {
     return tab;
   }
 
-  /** A tab with the page, once its errors are there. */
+  /** A tab with the page, once its error figures are there. */
   async open({ link = "", ...window } = {}) {
     const tab = await this.tab(window);
     await tab.goto(this.address + link);
@@ -68,14 +68,14 @@ export async function until(tab, expression) {
   }
 }
 
-/** Waits until a tab has drawn so many frames. */
+/** Waits until a tab has drawn this many frames. */
 export const frames = (tab, count = 2) =>
   tab.evaluate((count) => new Promise((done) => {
     const next = () => (count-- > 0 ? requestAnimationFrame(next) : done());
     next();
   }), count);
 
-/** Waits until a tab does not scroll any more: its place is the same in ten frames. */
+/** Waits until a tab no longer scrolls: its position is the same in ten frames. */
 export const scrolled = (tab) =>
   tab.evaluate(() => new Promise((done) => {
     let [place, frames] = [NaN, 0];
@@ -88,7 +88,7 @@ export const scrolled = (tab) =>
     next();
   }));
 
-/** Where an element is, from the window's upper left corner; it is scrolled to the window's middle. */
+/** The position of an element from the window's upper left corner, after scrolling it to the window's middle. */
 export const box = (tab, selector) =>
   tab.locator(selector).first().evaluate((element) => {
     element.scrollIntoView({ block: "center", behavior: "instant" });

@@ -1,9 +1,9 @@
 // Drags every handle, moves every slider, presses every button and radio of the figures in a real
-// browser, by mouse and by keyboard, and fails where nothing answers or the console speaks.
+// browser, by mouse and by keyboard, and fails if something does not respond or the console prints.
 //
 //   web/text/preview && node web/text/drag.mjs target/preview.html [DIR for a picture of each figure]
 //
-// It tries the page itself as well: web/build && node web/text/drag.mjs target/web/mode13h.html
+// It can test the page itself as well: web/build && node web/text/drag.mjs target/web/mode13h.html
 import { Suite, until } from "../test/suite.mjs";
 
 const [file, pictures] = process.argv.slice(2);
@@ -15,7 +15,7 @@ await suite.run(async () => {
   const page = await suite.tab({ height: 900, isStill: true });
   await page.goto(suite.address);
   await until(page, 'document.querySelectorAll("[data-figure]").length === 12 && document.readyState === "complete"');
-  // Two frames: one to draw what was asked for, one more to have drawn it.
+  // Two frames: one in which the change is drawn, and one to be sure that it has been.
   await page.evaluate("globalThis.settled = () => new Promise((r) => requestAnimationFrame(() => requestAnimationFrame(r))); 0");
   for (const name of await page.evaluate('[...document.querySelectorAll("[data-figure]")].map((f) => f.dataset.figure)')) {
     const figure = `document.querySelector('[data-figure="${name}"]')`;
@@ -23,20 +23,20 @@ await suite.run(async () => {
     await until(page, `!!${figure}.querySelector("canvas")`);
     const count = (selector) => page.evaluate(`${figure}.querySelectorAll('${selector}').length`);
     const nth = (selector, i) => `${figure}.querySelectorAll('${selector}')[${i}]`;
-    // What the figure says and shows: its words, its pictures, the words for those who do not see.
+    // The contents of the figure: its text, its pictures, and the text for screen readers.
     const state = async () => {
       const shown = await page.evaluate(`settled().then(() => ${figure}.innerText
         + [...${figure}.querySelectorAll("canvas")].map((c) => c.toDataURL()).join()
         + [...${figure}.querySelectorAll("[aria-label]")].map((e) => e.ariaLabel).join())`);
       for (const [words] of shown.matchAll(/The engine \w+ other \w+/g)) faults.push(`${name}: ${words}`);
-      // The promise, on the engine's own picture; rounding the exact light to a byte adds a half.
+      // The promise, on the engine's own picture; rounding the exact light to a byte adds half a shade.
       const [, worst] = shown.match(/Worst pixel of the picture: (\d+)/) ?? [];
       const [, E] = shown.match(/allowed error: ([\d.]+) shades/) ?? [];
       if (worst > +E + .5) faults.push(`${name}: ${worst} shades off within ${E}`);
       compared += worst !== undefined && E !== undefined;
       return shown;
     };
-    // Does the first of these; where nothing changes, the next. A point may stand at its limit.
+    // Does the first of these; if nothing changes, the next, because a point may be at its limit.
     const changes = async (what, ...deeds) => {
       const before = await state();
       for (const deed of deeds) {
@@ -92,7 +92,7 @@ await suite.run(async () => {
         await page.keyboard.press("Enter");
       };
       for (let i = 0; i < buttons; i++) {
-        // One may find its work done by the one before, which it takes back.
+        // A control's effect may already have been reached by the one before it, which is then undone.
         await changes(`button ${i}`, press(i), press((i + 1) % buttons));
         counts.buttons++;
       }

@@ -5,7 +5,7 @@ import { mountFigures } from "./figures/00-shared.js";
 
 mountFigures();
 
-/** Remounts what uses the engine. */
+/** Remounts the figures that use the engine. */
 export async function begin(wasm) {
   mountFigures(new Engine(await WebAssembly.compile(wasm)));
 }

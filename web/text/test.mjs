@@ -1,5 +1,5 @@
 // Tests of the text and its figures: node web/text/test.mjs
-// What the figures compute is held against slow oracles in BigInt or in doubles.
+// The figures' results are compared with slow oracles in BigInt or in doubles.
 import assert from "node:assert/strict";
 import { readFileSync, readdirSync } from "node:fs";
 
@@ -185,7 +185,7 @@ const tests = {
         offAffine = Math.max(offAffine, Math.abs(affine.us[i] - u), Math.abs(affine.vs[i] - v));
       }
       assert.ok(hit > 10000 && off < offAffine && affine.divisions === 0, `${[ratio, hit, off, offAffine]}`);
-      // Dividing at every 16th pixel is a bargain, not a gift: what it is off by can be seen.
+      // Dividing at every 16th pixel is cheaper, but its error is visible.
       assert.ok(ratio < 6 || off > 2, `${[ratio, off]}`);
       assert.ok(every.divisions * 8 < M.wallTexels(ratio, "exact").divisions);
     }
@@ -236,7 +236,7 @@ const tests = {
     for (let i = 0; i < 144; i++) {
       for (const spot of [false, true]) assert.ok(M.wallLight(i, 30, 60, 40, spot) >= 0 && M.wallLight(i, 30, 60, 40, spot) <= 1);
     }
-    // A spot light: full light on its axis, less on its soft edge, and beyond it only what is everywhere.
+    // A spot light: full light on its axis, less on its soft edge, and only ambient light beyond.
     const [inside, edge] = [10, 33].map((off) => M.wallLight(60 + off, 40, 60, 40, true) / M.wallLight(60 + off, 40, 60, 40, false, 52));
     assert.ok(inside === 1 && edge > .2 && edge < .8 && M.wallLight(105, 40, 60, 40, true) === .07, `${inside} ${edge}`);
   },
@@ -255,7 +255,7 @@ const tests = {
       tightest = Math.min(tightest, bound - .5 - off);
       straight += bound < 4;
     });
-    // It is a bound that decides something, not one that is always far above.
+    // The bound is tight enough to decide something, not always far above.
     assert.ok(tightest < .05 && straight > 1000, `${[tightest, straight]}`);
   },
 
@@ -381,7 +381,7 @@ function slowCover(corners, px, py) {
   return [where, inside];
 }
 
-// Rows of the period, one addition a row and edge.
+// Rows as the period's code draws them, with one addition per row and edge.
 function slowVintage(corners, width, height) {
   const out = new Array(width * height).fill(0);
   const v = corners.map(big).sort((p, q) => Number(p[1] - q[1] || p[0] - q[0])).map((p) => p.map((u) => (u + 128n) >> 8n));

@@ -216,7 +216,7 @@ impl<W: Write> Out<W> {
         }
     }
 
-    /// Writes a compressed image, and before the first the file's header.
+    /// Writes a compressed image; before the first one, also the file's header.
     fn write(&mut self, size: (u16, u16), palette: &[Rgb; 256], image: &Frame<'_>) -> Result<(), AnimationError> {
         // If this fails, the file ends in the middle of an image, and nothing more may be written.
         let out = std::mem::replace(self, Out::Failed(io::ErrorKind::Other));

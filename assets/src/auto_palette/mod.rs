@@ -64,10 +64,10 @@ impl AutomaticPalette {
 /// much as the one before.
 ///
 /// Colours that are mixed on the screen are on no ramp: those in fog and behind transparent surfaces, and all colours
-/// under a coloured light. They are measured in true colour, and share the block of the textures. Only the final
-/// colours are: what is seen through glass in fog is rounded to an entry before it is mixed. Under coloured light there
-/// are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest of the
-/// measured colours. The same holds if the scene's settings ask for three channels.
+/// under a coloured light. They are measured in true colour, and share the block of the textures. This holds for the
+/// final colours only: what is seen through glass in fog is rounded to an entry before it is mixed. Under coloured
+/// light there are no ramps: materials keep their own colours, are lit on three channels, and are drawn in the nearest
+/// of the measured colours. The same holds if the scene's settings ask for three channels.
 ///
 /// ```
 /// use mode13h::mesh::shapes;
@@ -95,8 +95,8 @@ pub fn of_scene(scene: &Scene) -> Result<AutomaticPalette, RenderError> {
 /// Makes a palette for a scene in which more moves than its [motions](Scene::motions), such as a model that plays an
 /// animation.
 ///
-/// `pose` moves that to where it is at a time, in seconds, in a copy of the scene whose time is already set. It repeats
-/// after each of the `periods`, in seconds. Otherwise like [`of_scene`].
+/// `pose` moves the rest to where it is at a time, in seconds, in a copy of the scene whose time is already set. Its
+/// motion repeats after each of the `periods`, in seconds. Otherwise like [`of_scene`].
 ///
 /// ```
 /// # use mode13h::scene::Scene;

@@ -9,7 +9,7 @@
 //!   visible, it costs `area·length²/(12·(n − 1)²)`.
 //! - The textures' colours at all visible brightnesses are reduced by median cut, whose cuts have known gains. All
 //!   textures share one block: their shades use the nearest entry of the whole palette
-//!   ([`Lut64K::shades`](mode13h::palette::Lut64K::shades)), and so the ramps' entries, too.
+//!   ([`Lut64K::shades`](mode13h::palette::Lut64K::shades)), so they use the ramps' entries, too.
 //! - Colours that are mixed on the screen and on no ramp (in fog, behind glass, under coloured light) are points of the
 //!   same cloud, without change of brightness.
 //!

@@ -12,7 +12,7 @@
 //!
 //! **Orientation.** A closed mesh faces in all directions, so its faces' area vectors add up to zero; those of a sheet
 //! add up to its area as seen from the front. A sheet that faces along z is terrain or a floor with z up: with y up it
-//! would stand on edge. One that faces along x would be seen edge on, and is turned to show its front at first.
+//! would stand on edge. One that faces along x would be seen edge-on, so it is turned to show its front at first.
 
 use core::ops::Range;
 

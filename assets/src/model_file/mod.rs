@@ -261,8 +261,8 @@ pub fn unpacked<'r>(mut reader: impl BufRead + 'r) -> io::Result<Box<dyn BufRead
     Ok(if is_packed { Box::new(BufReader::new(Members(Some(GzDecoder::new(reader))))) } else { Box::new(reader) })
 }
 
-/// The contents of a gzipped file: those of its members, one after another. Zeros after the last, which fill a block of a
-/// tape, are ignored, as `gzip` does.
+/// The contents of a gzipped file: those of its members, one after another. Zeros after the last, which pad a tape
+/// block, are ignored, as in `gzip`.
 struct Members<R>(Option<GzDecoder<R>>);
 
 impl<R: BufRead> Read for Members<R> {

@@ -13,7 +13,7 @@ use super::{Format, parse_named};
 use crate::texture;
 
 /// The most bytes read from a palette file. None is longer, not even one with a paragraph for each colour; a longer one
-/// fails on the part up to here.
+/// fails on the part that is read.
 const LONGEST: usize = 1 << 20;
 
 /// The most bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.

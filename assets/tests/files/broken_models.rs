@@ -1,4 +1,4 @@
-//! Hard case F1: broken models are refused with their place, and what is large but well formed loads.
+//! Hard case F1: broken models are rejected with a position, and large but well-formed ones load.
 
 use std::fs;
 use std::io;
@@ -37,7 +37,7 @@ fn f1_broken_files() {
     tried.add(1);
 }
 
-/// Behind five lines that are right, whatever ends them all.
+/// The fault follows five correct lines, with any kind of line ending.
 #[test]
 fn f1_broken_lines() {
     let mut tried = Tried::new("f1_broken_lines", 3 * 40);
@@ -92,14 +92,14 @@ fn f1_broken_lines() {
     }
 }
 
-/// Other kinds of file, given by mistake.
+/// Other kinds of files, given by mistake.
 #[test]
 fn f1_what_is_no_model_at_all_is_refused() {
     let mut tried = Tried::new("f1_what_is_no_model_at_all_is_refused", 14);
     let text = format!("{TRIANGLE}f 1 2 3\n");
     let utf16 =
         |bytes: fn(u16) -> [u8; 2]| -> Vec<u8> { format!("\u{FEFF}{text}").encode_utf16().flat_map(bytes).collect() };
-    // The same model behind gzip: header, one stored block, checksum and length left at 0.
+    // The same model, gzipped: header, one stored block, checksum and length left at 0.
     let mut gzip = b"\x1F\x8B\x08\0\0\0\0\0\0\x03\x01".to_vec();
     gzip.extend((text.len() as u16).to_le_bytes());
     gzip.extend((!(text.len() as u16)).to_le_bytes());
@@ -162,7 +162,7 @@ fn f1_broken_libraries() {
     }
 }
 
-/// Files that name what is no file: folders, devices that never end, the model itself.
+/// Files that name something that is not a regular file: folders, devices that never end; or the model itself.
 #[test]
 fn f1_libraries_that_are_no_libraries_are_a_warning() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -186,7 +186,7 @@ fn f1_libraries_that_are_no_libraries_are_a_warning() {
     }
 }
 
-/// However many lines give cause for a warning.
+/// Warnings are limited, however many lines cause one.
 #[test]
 fn f1_warnings_are_counted_and_not_piled_up() {
     let mut tried = Tried::new("f1_warnings_are_counted_and_not_piled_up", 4);
@@ -221,7 +221,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     loads(&format!("{TRIANGLE}f 1 2 \\\n{} 3\n", "\\\n".repeat(megabyte)), 1);
     loads(&format!("o {}\n{plain}", "name".repeat(megabyte / 4)), 1);
     loads(&format!("{TRIANGLE}usemtl {}\nf 1 2 3\n", "m".repeat(megabyte)), 1);
-    // Convex: any number of corners, also where rounding has dented them.
+    // Convex: any number of corners, even if rounding has dented them.
     let circle = |corners: usize, inner: f64| -> Vec<Vec3> {
         let angle = |i: usize| std::f64::consts::TAU * i as f64 / corners as f64;
         let radius = |i: usize| if i.is_multiple_of(2) { 1.0 } else { inner };
@@ -237,7 +237,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     square.extend((1..=side).rev().map(|i| (0, i)));
     let square: Vec<Vec3> = square.into_iter().map(|(x, y)| Vec3::new(x.into(), y.into(), 0.0)).collect();
     loads(&face_text(&square), 99_998);
-    // All in one point, or all on a line.
+    // All corners in one point, or all on a line.
     loads(&format!("{plain}f{}", " 1".repeat(1_000_000)), 999_999);
     // Concave: up to 20,000.
     loads(&face_text(&circle(10_000, 0.5)), 9_998);
@@ -252,7 +252,7 @@ fn f1_what_is_large_but_well_formed_loads() {
     tried.add(1);
 }
 
-/// How long this thread has been at work. On Linux the processor's time, which others cannot add to; it is counted in
+/// The time that this thread has worked: on Linux its processor time, to which other programs do not add, counted in
 /// ticks of some milliseconds.
 fn time_at_work(epoch: Instant) -> Duration {
     let schedule = fs::read_to_string("/proc/thread-self/schedstat").ok();
@@ -275,8 +275,8 @@ fn time_to_parse(text: &str, library: &str) -> f64 {
     }
 }
 
-/// A file eight times as long takes about eight times as long to read, and no more than twelve times, but where the reason
-/// is known; three attempts, as the machine may be busy.
+/// A file eight times as long takes about eight times as long to read, and at most twelve times, except where the
+/// reason is known. There are three attempts, as the machine may be busy.
 #[test]
 #[ignore = "the long run: it measures time"]
 fn f1_long_time_grows_as_the_file_does() {
@@ -287,7 +287,7 @@ fn f1_long_time_grows_as_the_file_does() {
         ("carriage returns", |n| ("\r".repeat(n) + TRIANGLE, String::new())),
         ("joined lines of a face", |n| (format!("{TRIANGLE}f{}", " 1 2 3 \\\n".repeat(n)), String::new())),
         ("a triangle gone round many times", |n| {
-            // Up to the most corners that a concave face may have: four times as many.
+            // Limited to the most corners that a concave face may have, so only four times as many.
             (format!("{TRIANGLE}f{}", " 1 2 3".repeat(n.min(19_998) / 3)), String::new())
         }),
         ("comments", |n| ("# \\\n".repeat(n), String::new())),
@@ -337,8 +337,9 @@ fn f1_long_time_grows_as_the_file_does() {
     for (what, make) in cases {
         let [(short, short_library), (long, long_library)] = [make(5_000), make(40_000)];
         let ratio = || time_to_parse(&long, &long_library) / time_to_parse(&short, &short_library);
-        // A name is hashed, kept twice and copied into a surface of its own: of 5,000 all that lies in the caches, of 40,000 it
-        // does not. The time of a name grows by a tenth for each doubling, from 2,500 to 60,000, and not in proportion.
+        // A name is hashed, stored twice and copied into a surface of its own. For 5,000 names all of that fits into
+        // the caches, for 40,000 it does not. The time per name grows by a tenth for each doubling, from 2,500 to
+        // 60,000 names.
         let (limit, measure) = match what {
             "names of materials" => (24.0, "of materials that all have names of their own"),
             _ => (12.0, "times as long for eight times the file"),

@@ -1,4 +1,4 @@
-//! What errors and panics of the library say.
+//! The messages of the library's errors and panics.
 
 use std::error::Error;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -35,7 +35,7 @@ fn errors_print_what_they_display() {
     assert!(error.to_string().starts_with("none.obj: "), "{error}");
 }
 
-/// Every error of the library does so, through the one macro.
+/// Every error of the library prints this way, through one macro.
 #[test]
 fn every_error_prints_what_it_displays() {
     let mut errors = 0;

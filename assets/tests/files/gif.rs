@@ -1,4 +1,4 @@
-//! GIF films, read back by a decoder and put together frame by frame: every colour, every delay, nothing drawn
+//! GIF animations, read back by a decoder and composed frame by frame: every colour, every delay, nothing drawn
 //! unnecessarily, and no incomplete file (hard case F4).
 
 use std::cell::Cell;
@@ -38,10 +38,10 @@ impl Given {
         Picture { pixels, width: *width, height: *height, pitch: *pitch, palette, shape: PixelShape::default() }
     }
 
-    /// The colour of each pixel of the film at this scale.
+    /// The colour of each pixel of the animation at this scale.
     fn colors(&self, scale: Scale) -> Vec<Rgb> {
         let (width, height) = scale.size(self.width, self.height);
-        // The pixel of the frame under the centre of a pixel of the film.
+        // The pixel of the frame under the centre of a pixel of the animation.
         let under = |at: usize, of: usize, frame: usize| (2 * at + 1) * frame / (2 * of);
         let mut colors = Vec::new();
         for y in 0..height {
@@ -67,7 +67,7 @@ fn write(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<u8>, Film) {
     film.finish().expect("finished")
 }
 
-/// Writes the same film, with each frame prepared before the ones that precede it.
+/// Writes the same animation, with each frame prepared before the ones that precede it.
 fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> {
     let ready = (0..frames.len()).rev().map(|i| {
         let picture = frames[i].picture();
@@ -86,18 +86,19 @@ fn write_made_ready(frames: &[Given], scale: Scale, rate: FrameRate) -> Vec<u8> 
 fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
     let mut random = Random::named("a_frame_that_was_made_ready_for_another_place_is_still_a_frame");
     let frame = noise(&mut random, 9, 7, 9);
-    // Following itself it changes nothing, but as a film's first frame it is all there is.
+    // A frame that follows itself changes nothing, but as an animation's first frame it must be written whole.
     let alone = GifFrame::after(&frame.picture(), &frame.picture(), Scale::Double, &frame.palette).expect("made");
     let mut film = GifWriter::new(Vec::new(), Scale::Double, FrameRate::default());
     film.add_frame(alone).expect("added");
-    // With another size it is refused, and the film goes on.
+    // A frame of another size is rejected, and the animation continues.
     let other = GifFrame::first(&frame.picture(), Scale::One).expect("made");
     let refused = film.add_frame(other).expect_err("refused");
     assert!(matches!(refused.kind, AnimationErrorKind::OtherSize { .. }), "{refused}");
     let (file, _) = film.finish().expect("finished");
     assert!(file == write(&[frame], Scale::Double, FrameRate::default()).0);
 
-    // A frame that omits unchanged pixels, although its rectangle is the whole picture, cannot start a film either.
+    // A frame that omits unchanged pixels, although its rectangle is the whole picture, cannot start an animation
+    // either.
     let before = Given { pixels: vec![7; 60 * 9], width: 60, height: 9, pitch: 60, palette: grey() };
     let mut frame = before.clone();
     (frame.pixels[0], frame.pixels[60 * 9 - 1]) = (90, 91);
@@ -109,7 +110,7 @@ fn a_frame_that_was_made_ready_for_another_place_is_still_a_frame() {
     assert!(file == write(&[frame], Scale::One, FrameRate::default()).0);
 }
 
-/// What is seen, and for how long, in 1/100 s; unchanged pictures are merged.
+/// The pictures seen, and for how long, in 1/100 s; unchanged ones are merged.
 fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u64)> {
     let mut seen: Vec<(&[Rgb], u64)> = Vec::new();
     for (colors, delay) in shown {
@@ -121,8 +122,8 @@ fn seen<'a>(shown: impl Iterator<Item = (&'a [Rgb], u64)>) -> Vec<(&'a [Rgb], u6
     seen
 }
 
-/// Writes a film, decodes it, and compares: what is seen at each moment; that each image's rectangle is the smallest
-/// that holds all changing pixels; that an image has a palette only where it needs one. Returns the images.
+/// Writes an animation, decodes it, and checks the picture at each moment, that each image's rectangle is the smallest
+/// that holds all changing pixels, and that an image has a palette only if it needs one. Returns the images.
 fn check(frames: &[Given], scale: Scale, rate: FrameRate) -> (Vec<Image>, Film) {
     let (file, film) = write(frames, scale, rate);
     assert!(write_made_ready(frames, scale, rate) == file, "frames that were made ready beforehand");
@@ -198,8 +199,8 @@ fn random_palette(random: &mut Random) -> [Rgb; 256] {
     std::array::from_fn(|_| Rgb::from(random.next_u64() as u32 & 0xFF_FFFF))
 }
 
-/// The next frame of a random film: nothing changes, or some pixels, or all, or the palette, or both, or the indices
-/// while the colours stay the same.
+/// The next frame of a random animation: nothing changes, or some pixels, or all, or the palette, or both, or the
+/// indices while the colours stay the same.
 fn next(random: &mut Random, before: &Given) -> Given {
     let mut frame = before.clone();
     let pixels = frame.pixels.len() as i64;
@@ -314,7 +315,7 @@ fn one_frame_is_a_film() {
     }
 }
 
-/// Files are the same on a big-endian machine.
+/// Files are the same on big-endian machines.
 #[test]
 fn a_film_has_these_bytes() {
     let frame = Given { pixels: vec![0; 258 * 3], width: 258, height: 3, pitch: 258, palette: grey() };
@@ -404,7 +405,7 @@ fn what_is_not_seen_is_not_written() {
     assert_eq!((film.frames, images[0].delay), (3, 9));
 }
 
-/// Pixels that a smaller film does not show.
+/// Pixels that an animation of a smaller size does not show.
 #[test]
 fn a_change_that_falls_between_the_pixels_of_a_smaller_film() {
     let frame = |at: Option<usize>| {
@@ -499,7 +500,7 @@ fn frames_that_do_not_fit_are_refused_and_the_film_goes_on() {
     let size = Scale::To { width: 16, height: 12 };
     let mut film = GifWriter::new(Vec::new(), size, FrameRate::default());
     film.add(&first.picture()).expect("added");
-    // Frames of another size, also if the film would have the same size.
+    // Frames of another size, even if the animation's size would be the same.
     for (width, height) in [(8, 5), (6, 8), (16, 12), (4, 3)] {
         let other = noise(&mut random, width, height, width);
         let error = film.add(&other.picture()).expect_err("refused");
@@ -573,7 +574,7 @@ fn f4_a_film_that_runs_out_of_room_at_any_byte_never_ends_well() {
             let full =
                 matches!(kind, Some(AnimationErrorKind::Io(error)) if error.kind() == io::ErrorKind::StorageFull);
             assert!(result.is_ok() || full, "{room} of {whole}: {result:?}");
-            // There is room again, but what was lost is lost.
+            // There is room again, but the lost bytes stay lost.
             if full {
                 failed += 1;
                 left.set(1 << 20);

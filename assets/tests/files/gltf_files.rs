@@ -1,4 +1,5 @@
-//! glTF: each way to write a mesh gives what OBJ gives, materials follow their rule, errors name the part.
+//! glTF: every way to write a mesh gives the mesh that OBJ gives, materials follow their rule, and errors name the
+//! faulty part.
 
 use std::collections::HashMap;
 use std::io;
@@ -17,7 +18,7 @@ use crate::model_files::{Faces, contents, loaded, refused};
 pub(crate) struct Gltf {
     pub(crate) bytes: Vec<u8>,
     pub(crate) lists: HashMap<&'static str, Vec<String>>,
-    /// What else stands in the root.
+    /// Further members of the root object.
     pub(crate) more: String,
 }
 
@@ -282,7 +283,7 @@ fn numbers_without_bytes_are_zeros() {
     for count in [8, 70_000, 1 << 20] {
         assert_eq!(of_mesh(&places(count).0), expected, "{count}");
     }
-    // A mesh all of whose vertices are at 0 has no area, but is no fault.
+    // A mesh all of whose vertices are at 0 has no area, but that is not an error.
     let (mut file, zeros) = places(8);
     file.shown(&format!("\"POSITION\":{zeros}"), ",\"mode\":5");
     assert_eq!(of_mesh(&file)[..3], expected);
@@ -290,7 +291,7 @@ fn numbers_without_bytes_are_zeros() {
     assert_eq!(refused(places((1 << 20) + 1).0.glb(), "a.glb"), what);
 }
 
-/// A moving triangle whose positions stand among others, at `places`.
+/// A moving triangle whose positions are among others, at `places`.
 fn triangle_among(count: usize, places: [u32; 3]) -> Gltf {
     let mut file = Gltf::default();
     let mut positions = vec![[f32::INFINITY; 3]; count];
@@ -359,7 +360,8 @@ fn textures_lie_as_the_file_says() {
     }
 }
 
-/// Textures repeat here. Another wrapping mode is a warning, but clamping only where coordinates leave the texture.
+/// Textures repeat here. Any other wrapping mode gives a warning; clamping does so only where coordinates leave the
+/// texture.
 #[test]
 fn textures_that_clamp_are_a_warning() {
     let image = |view| format!("{{\"bufferView\":{view}}}");
@@ -392,7 +394,7 @@ fn textures_that_clamp_are_a_warning() {
     }
 }
 
-/// An image whose type is not said is seen by its bytes; one without any is refused, by its place.
+/// An image without a stated type is recognized by its bytes; one without bytes is rejected, with its position.
 #[test]
 fn images_need_bytes_and_no_type() {
     let file = textured(|view| format!("{{\"bufferView\":{view}}}"), "", "");
@@ -403,7 +405,7 @@ fn images_need_bytes_and_no_type() {
     assert!(error.ends_with("images[0]: has neither a uri nor a bufferView"), "{error}");
 }
 
-/// The rule, implemented once more.
+/// The material rule, implemented a second time.
 #[test]
 fn materials_follow_the_rule() {
     let srgb = |linear: f64| if linear <= 0.0031308 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
@@ -431,7 +433,7 @@ fn materials_follow_the_rule() {
     }
 }
 
-/// The warning is that of MTL files with `d 0`, and given only where the mode counts alpha.
+/// The warning is that of MTL files with `d 0`, and is given only where the mode uses alpha.
 #[test]
 fn fully_transparent_materials_are_opaque_with_a_warning() {
     let warning = "a.glb: a fully transparent material is drawn opaque; its alpha is left out";
@@ -500,7 +502,8 @@ fn colors_of_vertices_are_texels() {
     assert_eq!([2, 3].map(color), [Rgb::new(156, 156, 156), Rgb::new(0, 156, 156)]);
 }
 
-/// Colours of vertices multiply the base colour, and the material stays as it is: two of them, painted and plain.
+/// Vertex colours multiply the base colour, and the material itself stays unchanged: there are two of them, painted and
+/// plain.
 #[test]
 fn colors_of_vertices_leave_the_material() {
     let mut file = Gltf::default();

@@ -56,15 +56,15 @@ fn are_near(a: Vec3, b: [f64; 3], most: f64) -> bool {
     a.to_array().iter().zip(b).all(|(a, b)| (f64::from(*a) - b).abs() <= most)
 }
 
-/// The light of a lamp at a distance, as the engine has it.
+/// The light of a lamp at a distance, by the engine's formula.
 fn lamp_at(light: &Light, distance: f64) -> f64 {
     let Light::Lamp { intensity, range, .. } = *light else { panic!("{light:?}") };
     let left = (1.0 - (distance / f64::from(range)).powi(2)).max(0.0);
     f64::from(intensity) * left * left
 }
 
-/// Two white lamps and a sun about a cube: their light in its middle has the ratios of the file, adds up to full light, and
-/// falls off there as the inverse square does.
+/// Two white lamps and a sun around a cube: in its middle their light has the ratios given in the file, adds up to full
+/// light, and falls off with the inverse square.
 #[test]
 fn lights_have_the_files_ratios_where_the_model_is() {
     let down = list(&turn([1.0, 0.0, 0.0], -FRAC_PI_2));
@@ -84,14 +84,14 @@ fn lights_have_the_files_ratios_where_the_model_is() {
     assert_eq!(warnings, ["a.glb: left out: lights that emit no light"]);
     assert!(camera.is_none() && rig.is_none());
     let [lamp, spot, sun] = *lights.as_slice() else { panic!("{lights:?}") };
-    // 3200/16², 400/8², and 2.5; of red 0.299 counts.
+    // 3200/16², 400/8², and 2.5; red counts 0.299.
     let full = 12.5 + 6.25 * 0.299 + 2.5;
     let (shares, distances) = ([12.5, 6.25].map(|share| share / full), [16.0, 8.0]);
     for ((light, share), distance) in [lamp, spot].iter().zip(shares).zip(distances) {
         // Some roundings to f32.
         let near = |a: f64, b: f64| (a - b).abs() < 1e-6 * b;
         assert!(near(lamp_at(light, distance), share), "{light:?} {share}");
-        // The slope of the inverse square is −2/d of the value; that of a short step is off by its length's square.
+        // The slope of the inverse square is −2/d of the value; a short step is off by the square of its length.
         let step = distance / 1024.0;
         let slope = (lamp_at(light, distance + step) - lamp_at(light, distance - step)) / (2.0 * step);
         assert!((slope / (-2.0 * share / distance) - 1.0).abs() < 1e-4, "{light:?} {slope}");
@@ -138,7 +138,7 @@ fn the_first_camera_in_perspective_is_the_camera() {
     assert_eq!((camera.eye, camera.up, camera.near), (Vec3::new(3.0, 0.0, -8.0), Vec3::NEG_Y, 0.25));
     assert_eq!(camera.target, Vec3::new(3.0, 0.0, 0.0), "as far as the middle of the cube");
     assert_eq!(camera.field_of_view.to_radians(), 0.75);
-    // The renderer takes it, and the file's lights.
+    // The renderer accepts it and the file's lights.
     let scene = composed(Object::new(shapes::cube()), &[], Some(camera)).expect("a scene");
     assert_eq!((scene.camera, scene.lights().len()), (camera, 2));
     let Light::Sun { direction: key, .. } = scene.lights()[0] else { panic!("{:?}", scene.lights()) };
@@ -166,8 +166,8 @@ fn placed(loaded: &Loaded, clip: usize, seconds: f64) -> Vec<Vec3> {
     rig(loaded).pose(&loaded.mesh, clip, seconds).mesh.positions().to_vec()
 }
 
-/// A node turns evenly about y by a right angle, and all below it: against the sine and the cosine in f64. The file's numbers
-/// are f32, off by 2⁻²⁵ in each of a quaternion's, and positions are below 4 and rounded to f32.
+/// A node and everything below it turn evenly about y by a right angle, compared with sine and cosine in f64. Each
+/// number of the file's quaternions is an f32, off by 2⁻²⁵, and positions are below 4 and rounded to f32.
 #[test]
 fn a_node_turns_evenly_and_takes_its_children_along() {
     let mut file = with_shape(&shapes::cube());
@@ -270,8 +270,8 @@ fn half_weights() -> Vec<u8> {
     HALVES.as_flattened().iter().flat_map(|weight| weight.to_le_bytes()).collect()
 }
 
-/// The upper joint turns by a right angle about z, to the left: (x, y) above it goes to (−(y − 1), 1 + x), and the middle row
-/// is half way between that and where it was. About x, toward the eye, normals turn with it.
+/// The upper joint turns by a right angle about z, to the left: (x, y) above it goes to (−(y − 1), 1 + x), and the
+/// middle row is half-way between there and where it was. When it turns about x, toward the eye, normals turn too.
 #[test]
 fn a_bar_on_two_joints_bends() {
     let as_u8: Vec<u8> =
@@ -336,7 +336,7 @@ fn a_skinned_mesh_at_rest_is_where_its_joints_are() {
     assert!(are_near(last, [-1.0, 1.5, 0.0], 1e-6) || are_near(last, [-1.0, 0.5, 0.0], 1e-6), "{last}");
 }
 
-/// Normals that the file does not give move with the faces that gave them.
+/// Normals that the file does not give move with the faces that they were computed from.
 #[test]
 fn normals_that_were_found_move_too() {
     let mut file = with_shape(&shapes::torus(12, 6));
@@ -351,7 +351,8 @@ fn normals_that_were_found_move_too() {
     }
 }
 
-/// A node that an animation turns inside out shows both sides, with normals that look at the eye; back again it is as before.
+/// A node that an animation turns inside out shows both sides, with normals that face the eye; turned back, it is as
+/// before.
 #[test]
 fn a_mirrored_pose_is_not_drawn_from_its_inside() {
     for (at_rest, sign) in [("", 1.0), (",\"scale\":[-1,1,1]", -1.0)] {
@@ -364,7 +365,7 @@ fn a_mirrored_pose_is_not_drawn_from_its_inside() {
         let [before, mirrored] = [0.5, 1.5].map(|seconds| rig(&model).pose(&model.mesh, 0, seconds).mesh);
         assert_eq!(before, model.mesh);
         assert!(mirrored.is_closed() && !mirrored.is_outward() && !mirrored.is_convex());
-        // Faces and normals look to one side.
+        // Faces and normals point to the same side.
         for &[a, b, c] in mirrored.triangles() {
             let [p, q, r] = [a, b, c].map(|i| mirrored.positions()[i as usize]);
             assert!((q - p).cross(r - p).dot(mirrored.normals()[a as usize]) > 0.0);
@@ -372,8 +373,8 @@ fn a_mirrored_pose_is_not_drawn_from_its_inside() {
     }
 }
 
-/// One renderer that follows a bending body, forwards and back, draws what a new one draws of each pose; a time that is shown
-/// already keeps what it has.
+/// One renderer that follows a bending body, forwards and back, draws each pose as a new renderer does; a time that is
+/// already shown changes nothing.
 #[test]
 fn a_body_that_bends_is_drawn_as_a_new_one() {
     let mut file = with_shape(&shapes::torus(12, 8));
@@ -405,7 +406,7 @@ fn a_body_that_bends_is_drawn_as_a_new_one() {
     assert!(pictures[0] != pictures[1] && pictures[1] != pictures[2]);
 }
 
-/// Two spheres, red and green, of which the second grows in a second from one size to another.
+/// Two spheres, red and green; the second grows from one size to another in one second.
 fn growing(from: f32, to: f32) -> Gltf {
     let (positions, indices) = points_of(&shapes::sphere(16, 8));
     let mut file = Gltf::default();
@@ -422,7 +423,7 @@ fn growing(from: f32, to: f32) -> Gltf {
     file
 }
 
-/// An automatic palette is for what is visible while a model plays, not only where it is at rest.
+/// An automatic palette covers what is visible while a model plays, not only what is visible at rest.
 #[test]
 fn a_palette_is_for_the_whole_animation() {
     let made = |file: Gltf, rounds: f64| -> AutomaticPalette {
@@ -471,7 +472,7 @@ fn a_clip_is_found_by_name_or_number() {
     for word in ["3", "-1", "Scale", "", "18446744073709551616"] {
         assert_eq!(found(word), Err(format!("no animation {word}; {known}")));
     }
-    // A name comes before a number; one without a name has the number only.
+    // A name takes precedence over a number; a clip without a name has only its number.
     let edited = |from: &str, to: &str| {
         let mut file = with_clips();
         file.replace("animations", from, to);

@@ -1,4 +1,5 @@
-//! STL and PLY: each encoding of a mesh gives what OBJ gives, errors say where, and the format is detected by content.
+//! STL and PLY: each encoding of a mesh gives the mesh that OBJ gives, errors have a position, and the format is
+//! detected by content.
 
 use std::fmt::Write;
 use std::io;
@@ -200,7 +201,7 @@ fn faces_of_texts_have_their_lines() {
                 element face 2\nproperty list char int vertex_index\nend_header\n0 0 0\n1 0 0\n0 1 0\n\n3 0 1 2\n3\n2 1 0\n";
     let mesh = loaded(text, "a.ply").mesh;
     assert_eq!((mesh.line(0), mesh.line(1)), (Some(14), Some(15)));
-    // A byte order mark is no part of the first line.
+    // A byte order mark is not part of the first line.
     for name in ["a.ply", "a"] {
         let mesh = loaded(format!("\u{FEFF}{text}"), name).mesh;
         assert_eq!((mesh.line(0), mesh.line(1)), (Some(14), Some(15)), "{name}");
@@ -240,7 +241,7 @@ fn text_may_be_on_any_number_of_lines() {
     assert_eq!(loaded(two, "a.stl").mesh.triangles().len(), 2);
 }
 
-/// Zeros after a gzipped file fill a block of a tape, as `gzip` has it; anything else is an error.
+/// Zeros after a gzipped file pad a tape block, as in `gzip`; anything else is an error.
 #[test]
 fn packed_files_may_end_in_zeros() {
     let pack = |text: &str| {

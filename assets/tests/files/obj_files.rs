@@ -155,7 +155,7 @@ fn large_faces_that_are_monotone_are_split() {
         let face: Vec<Vec3> = outline.iter().map(corner).map(|[x, y]| Vec3::new(x, y, 0.0)).collect();
         check_split(&mesh(face_text(&face)), &face);
     }
-    // A spiral is neither.
+    // A spiral is not monotone along either.
     let spiral = |i: i32, radius: f64| {
         let angle = f64::from(i) / 2_000.0;
         let (sin, cos) = angle.sin_cos();
@@ -627,7 +627,7 @@ fn vertices_have_colours_as_in_ply() {
         // One vertex without.
         format!("{first}v 2 2 2\n{faces}"),
         format!("v 2 2 2\n{first}f 2 4 3\n"),
-        // A material has a colour of its own, or another has.
+        // A material has a colour of its own, or another material has one.
         format!("mtllib a.mtl\n{first}usemtl red\n{faces}"),
         format!("mtllib a.mtl\n{first}usemtl grey\n{faces}usemtl shiny\n{faces}"),
     ] {
@@ -635,12 +635,12 @@ fn vertices_have_colours_as_in_ply() {
         assert!(loaded.warnings.len() == 1 && loaded.textures.is_empty(), "{:?}", loaded.warnings);
         assert!(loaded.warnings[0].ends_with(": vertex colours left out"), "{:?}", loaded.warnings);
     }
-    // What is grey is their light, as with a texture, and a highlight stays.
+    // A grey only scales their light, as with a texture, and a highlight stays.
     let shiny = parse(&format!("mtllib a.mtl\n{first}usemtl red\nusemtl shiny\n{faces}"));
     let surface = &shiny.mesh.surfaces()[0];
     assert_eq!((surface.name.as_str(), surface.specular, surface.shininess), ("shiny", [0.5; 3], 30.0));
     assert_eq!(*shiny.textures[surface.texture.as_ref().expect("a texture")], due.1);
-    // A weight is no colour, nor are words.
+    // A weight is not a colour, and neither are words.
     let weights = parse(&format!("v 0 0 0 1\nv 1 0 0 1\nv 0 1 0 1\nv 0 0 1 1\n{faces}"));
     assert!(weights.warnings.is_empty() && weights.textures.is_empty());
     let words = parse(&format!("v 0 0 0 a b c\nv 1 0 0 a b c\nv 0 1 0 a b c\nv 0 0 1 a b c\n{faces}"));

@@ -230,7 +230,7 @@ fn fog_is_shown_in_its_colours() {
         (scene.fog, scene.background_color) = (Some(fog), Some(haze));
         let mut expected = Vec::new();
         for wall in scene.objects_mut() {
-            // The same distance for all of it.
+            // All of it is at the same distance.
             wall.angles = [Angle::default(); 3];
             wall.position.z = (random.unit() * 9.0 - 8.0) as f32;
             let level = fog.level(10.0 - f64::from(wall.position.z));
@@ -271,7 +271,7 @@ fn what_shines_through_is_shown_in_its_colours() {
         let made = made(&mut scene);
         assert_has(&made.palette, &expected, rounded(2));
         let half_a_step = |i: usize| half_a_step(&made.palette, made.entries[i][0]);
-        // Of the panes alone; of a sum both parts count in full.
+        // For the panes alone; in a sum both parts count in full.
         let allowed = |i: usize| nearest_to_mixture(half_a_step(i) + half_a_step(i - 12), rounded(2));
         let of = |i: usize| i.checked_sub(12).map(|pane| expected[pane]);
         assert_shown(&scene, of, allowed, &mut tried);

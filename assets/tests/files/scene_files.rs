@@ -676,7 +676,7 @@ fn f3_scenes_with_one_byte_changed_are_a_scene_or_one_line() {
     assert!(kinds[0] > 1_000 && kinds[1] > 100, "{kinds:?}");
 }
 
-/// Properties of every outcome: an error is one line that begins with the file's name.
+/// Checks what holds for every outcome: an error is one line that begins with the file's name.
 #[track_caller]
 fn check(result: &Result<Loaded, SceneError>, at: usize) {
     if let Err(error) = result {

@@ -97,7 +97,7 @@ fn a_round_has_no_seam_and_something_happens_in_it() {
     }
 }
 
-/// Each scene calls for what it should show; of the others at least one does not.
+/// Each scene calls for the effect that it should show, and at least one other scene does not.
 #[test]
 fn scenes_call_for_what_they_show() {
     for (name, effect) in [
@@ -175,7 +175,7 @@ fn a_face_between_two_lamps_shines_in_its_middle() {
     let [coarse, cut_up] = [46, 152].map(|y| (shown.at(24, y), shown.at(160, y)));
     assert!(coarse.1 * 10 > coarse.0 * 9, "above: {coarse:?}");
     assert!(cut_up.1 * 3 < cut_up.0, "below: {cut_up:?}");
-    // For both, right is what lighting every pixel gives.
+    // For both, the right values are those of light at every pixel.
     scene.settings.accuracy = Some(Shading::Phong.into());
     let shown = draw(&scene).0;
     assert!(shown.at(160, 46).abs_diff(shown.at(160, 152)) <= 3 && shown.at(160, 46) * 3 < shown.at(24, 46));

@@ -241,7 +241,7 @@ fn flipped(mesh: Mesh) -> Mesh {
 }
 
 /// Over a turn a model reaches the frame of nine tenths on both sides, or above and below, and never exceeds it; a low
-/// one on both sides. A still one does so in its picture.
+/// one on both sides. A model that does not move does so in its picture.
 ///
 /// The hull at 72 angles may fall short of its farthest by 1 − cos(π / 72) of 144 pixels, 0.14; a pixel is covered
 /// where its centre is. So the outermost column is the frame's or the next one inward. If the frame runs through a

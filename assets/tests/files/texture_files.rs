@@ -174,7 +174,7 @@ fn a_jpeg_that_is_cut_off_is_refused() {
     bytes.splice(2..2, preview);
     decode(Cursor::new(&bytes)).expect("whole");
     decode(Cursor::new(&bytes[..bytes.len() - 2])).expect_err("cut off");
-    // Phones append a film; here one that looks like the begin of another scan.
+    // Phones append a video; here one that looks like the beginning of another scan.
     bytes.extend([0xFF, 0xDA, 0, 4, 0xFF]);
     decode(Cursor::new(&bytes)).expect("whole");
     // Inside a larger file.
@@ -184,7 +184,7 @@ fn a_jpeg_that_is_cut_off_is_refused() {
     decode(inside).expect("whole");
 }
 
-/// What is wrong with a picture is reported in one sentence, whatever its decoder says.
+/// An error in a picture is reported in one sentence, whatever its decoder says.
 #[test]
 fn what_is_wrong_with_a_picture_is_one_sentence() {
     use image::ImageFormat::{Bmp, Gif, Jpeg, Png, Tga, WebP};

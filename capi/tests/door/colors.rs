@@ -1,4 +1,4 @@
-//! Palettes and tables: those of the engine.
+//! Palettes and tables equal those of the engine.
 
 use std::ffi::CStr;
 
@@ -105,7 +105,7 @@ fn the_card_shows_the_same() {
     let mut pixels: Vec<u8> = (0..7 * 5).map(|_| random.below(256) as u8).collect();
     let canvas = crate::target(&mut pixels, 6, 5, 7);
     let (mut wide, mut narrow) = (vec![1_u32; 8 * 5], vec![1_u16; 8 * 5]);
-    // SAFETY: as many bytes as are said.
+    // SAFETY: the buffers have the sizes that the header requires.
     unsafe {
         assert_eq!(m13_show_32(&canvas, from.as_ptr(), wide.as_mut_ptr(), 160, 32), 0);
         assert_eq!(m13_show_16(&canvas, from.as_ptr(), narrow.as_mut_ptr(), 80, 16), 0);

@@ -1,4 +1,4 @@
-//! Frames of the conformance crate, whose triangles the renderer hands on, drawn by lists through the C door.
+//! Frames of the conformance crate: the renderer passes on their triangles, and the C interface draws them as lists.
 
 use mode13h::internals::each_triangle;
 use mode13h::internals::raster::effects::{EffectBatch, PixelPipeline, ShadeSource};
@@ -50,7 +50,7 @@ fn all_texels(texels: Texels<'_>) -> Vec<u8> {
     rows.flat_map(|v| (0..texels.width() as u32).map(move |u| texels.at(u << 16, v << 16))).collect()
 }
 
-/// A pipeline as a material, and its texels; `None` if it does what the door does not offer.
+/// A pipeline as a material, and its texels; `None` if it uses a feature that the C interface does not offer.
 fn material_of(pipeline: &PixelPipeline<'_>) -> Option<(Material, Vec<u8>)> {
     let mut made = match pipeline.source {
         ShadeSource::Shaded(interpolation) => {
@@ -87,14 +87,14 @@ fn material_of(pipeline: &PixelPipeline<'_>) -> Option<(Material, Vec<u8>)> {
     Some((made, texels))
 }
 
-/// Returns whether two materials draw the same. Texels are compared by the object they are of.
+/// Returns whether two materials draw the same. Texels are compared by the object they belong to.
 fn is_alike(a: &Material, b: &Material) -> bool {
     let numbers = |m: &Material| [m.shading, m.color, m.cull, m.mapping, m.dither, m.keep_depth, m.u_bits, m.v_bits];
     let tables = |m: &Material| [m.shade_table, m.slope_table, m.fog_table, m.blend_table];
     numbers(a) == numbers(b) && tables(a) == tables(b)
 }
 
-/// Every frame that the door can draw has the bytes and depths of the engine's raster, through lists of 16.16.
+/// Every frame that the C interface can draw has the bytes and depths of the engine's raster, through lists of 16.16.
 #[test]
 fn frames_have_the_bytes_of_the_raster() {
     let (memory, mut batch) = (Memory::new(), EffectBatch::new());
@@ -122,7 +122,7 @@ fn frames_have_the_bytes_of_the_raster() {
                 is_offered = false;
                 return;
             };
-            // The engine draws it at once.
+            // The engine draws the triangles directly.
             let canvas = Frame::new(&mut should, 320, 200, 320).expect("a frame");
             let depth = DepthBuffer::new(&mut should_depths, &canvas).expect("depths");
             let mut raster = Raster::new(canvas).with_depth(depth);
@@ -165,7 +165,7 @@ fn frames_have_the_bytes_of_the_raster() {
             (mesh.depth, mesh.shade, mesh.texture, mesh.fog, mesh.slope) = (8, 12, 16, 24, 28);
             let texels = if run.texels.is_empty() { core::ptr::null() } else { run.texels.as_ptr() };
             let material = Material { texels, ..run.material };
-            // SAFETY: all of it is there.
+            // SAFETY: the structs are valid, and so is the memory they name.
             let code = unsafe { m13_draw_x(&canvas, &mesh, &material, memory.context, core::ptr::null_mut()) };
             assert_eq!(code, OK, "{}", frame.name);
         }
@@ -174,7 +174,8 @@ fn frames_have_the_bytes_of_the_raster() {
         assert_eq!(differing, 0, "{}: pixels differ", frame.name);
         drawn += 1;
         with_effects += usize::from(runs.iter().any(|run| !run.texels.is_empty() || !run.material.fog_table.is_null()));
-        // Most depend neither on how hidden surfaces are found nor on the order of glass: these have the hash of every machine.
+        // Most frames depend neither on the hidden-surface method nor on the order of glass, so they have the hash of
+        // the frame list.
         as_expected += usize::from(usual.pixels == pixels && Some(usual.hash) == frame.expected());
     }
     println!("{drawn} frames, {with_effects} with textures or fog; {as_expected} have their hash; {left_out} left out");

@@ -1,4 +1,4 @@
-//! The header says what the functions are.
+//! The header declares the functions as Rust exports them.
 
 use mode13h_capi::abi::{CODES, VERSION};
 
@@ -10,12 +10,12 @@ const SOURCES: [&str; 4] = [
     include_str!("../../src/target.rs"),
 ];
 
-/// A type of C as Rust has it, with the name of the parameter taken off.
+/// The Rust type of a C parameter, with the parameter's name removed.
 fn rust_of(parameter: &str) -> String {
     let parameter = parameter.trim();
     let is_array = parameter.contains('[');
     let bare = parameter.split('[').next().unwrap_or_default();
-    // The name is the last word, and no type.
+    // The name is the last word, unless that is a type.
     let words: Vec<&str> = bare.split([' ', '*']).filter(|word| !word.is_empty()).collect();
     let stars = bare.matches('*').count() + usize::from(is_array);
     let is_const = words.first() == Some(&"const");
@@ -72,7 +72,7 @@ fn declared() -> Vec<String> {
     functions
 }
 
-/// The same of every function that Rust exports.
+/// `name(types) -> type` of every function that Rust exports.
 fn exported() -> Vec<String> {
     let mut functions = Vec::new();
     for source in SOURCES {

@@ -1,4 +1,4 @@
-//! Random triangles through the C door, beside the engine's own functions.
+//! Random triangles through the C interface, compared with the engine's own functions.
 
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_capi::abi::{OK, Stats, Target};
@@ -24,7 +24,7 @@ struct Canvas {
     narrow: Vec<u16>,
 }
 
-/// A vertex of this program, with something before, between and behind what is read.
+/// A vertex of this program, with other fields before, between and after those that are read.
 #[derive(Clone, Copy)]
 #[repr(C)]
 struct Own {
@@ -135,7 +135,7 @@ fn lists_have_the_bytes_of_the_engine() {
         let vertices_x: Vec<Vertex> = own_x
             .iter()
             .map(|v| {
-                // Rounded to the nearest 1/256, halves upward, by another way than the door's.
+                // Rounded to the nearest 1/256, halves upward, in another way than the C interface does it.
                 let nearest = |c: i32| ((f64::from(c) / 256.0 + 0.5).floor()) as i32;
                 let shade = (f64::from(v.shade) / 256.0 + 0.5).floor().clamp(0.0, 65_280.0) as u16;
                 let at = mode13h::fixed::I24F8::from_bits;
@@ -177,7 +177,7 @@ fn lists_have_the_bytes_of_the_engine() {
             let made_target = canvas_target(&mut is, shape, bits, clip);
             let mut stats = Stats { size: 24, triangles: 0, refused: 0, spans: 0, covered: 0, pixels: 0 };
             let draw = if is_fixed { m13_draw_x } else { m13_draw };
-            // SAFETY: all of it is there.
+            // SAFETY: the structs are valid, and so is the memory they name.
             let code = unsafe { draw(&made_target, &made, &of, core::ptr::null_mut(), &mut stats) };
             assert_eq!((code, stats.refused), (OK, 0));
             assert_eq!(stats.triangles as usize, list.len());
@@ -216,7 +216,7 @@ fn a_triangle_is_a_list_of_one() {
         // SAFETY: three corners.
         assert_eq!(unsafe { m13_triangle(&made, corners.as_ptr(), shading as u32, 77) }, OK);
         assert!(canvas == should);
-        // Cleared, and once more. Where truncation to 16.16 lost nothing it is the same.
+        // Cleared and drawn again. Where truncation to 16.16 lost nothing, the result is the same.
         let made = canvas_target(&mut canvas, shape, 32, everything);
         // SAFETY: as above.
         unsafe {
@@ -230,8 +230,8 @@ fn a_triangle_is_a_list_of_one() {
     }
 }
 
-/// A tessellated sheet through the near plane and far beyond the frame: each pixel is drawn once, as a blend that counts
-/// would show, and no matter how it is cut up none is left out that the whole covers.
+/// A tessellated sheet through the near plane and far beyond the frame: each pixel is drawn once, which a blend that
+/// counts shows, and however the sheet is cut up, no pixel is left out that the whole covers.
 #[test]
 fn clipped_neighbours_leave_no_hole() {
     #[derive(Clone, Copy)]
@@ -248,7 +248,7 @@ fn clipped_neighbours_leave_no_hole() {
         w: i32,
     }
     let memory = crate::Memory::new();
-    // Each pixel that is drawn over another becomes one more.
+    // Each pixel drawn over another increases it by one.
     let counts: Vec<u8> = (0..65_536).map(|i| ((i & 255) as u8).saturating_add(1)).collect();
     let mut random = Random::named("clipped in C");
     let (mut drawn, mut clipped) = (0, 0);
@@ -258,7 +258,7 @@ fn clipped_neighbours_leave_no_hole() {
         let (x, y, w) = (of(3_000.0, &mut random), of(2_000.0, &mut random), of(12.0, &mut random));
         let n = 1 + random.below(14);
         let linear = |[a, b, c]: [f64; 3], i: usize, j: usize| {
-            // Whole numbers of 1/65,536, so that both doors see the same.
+            // Whole numbers of 1/65,536, so that the float and the 16.16 functions see the same values.
             let value = a + b * (i as f64 / n as f64 * 2.0 - 1.0) + c * (j as f64 / n as f64 * 2.0 - 1.0);
             ((value * 16.0).round() / 16.0) as f32
         };
@@ -293,13 +293,13 @@ fn clipped_neighbours_leave_no_hole() {
             of.blend_table = counts.as_ptr();
             let mut stats = Stats { size: 24, triangles: 0, refused: 0, spans: 0, covered: 0, pixels: 0 };
             let draw = if is_fixed { m13_draw_x } else { m13_draw };
-            // SAFETY: all of it is there.
+            // SAFETY: the structs are valid, and so is the memory they name.
             assert_eq!(unsafe { draw(&canvas, &made, &of, memory.context, &mut stats) }, OK);
             drawn += stats.pixels;
             clipped += usize::from(stats.triangles as usize != indices.len() / 3);
             let is_double = pixels.iter().filter(|count| **count > 1).count();
             assert_eq!(is_double, 0, "{is_fixed}: pixels drawn twice");
-            // Between two that are drawn in a row, all are: what is in front of the near plane is convex.
+            // Between any two drawn pixels of a row, all are drawn: the part in front of the near plane is convex.
             for row in pixels.chunks(320) {
                 let first = row.iter().position(|count| *count > 0).unwrap_or(0);
                 let last = row.iter().rposition(|count| *count > 0).unwrap_or(0);

@@ -1,4 +1,4 @@
-//! The functions for C, called from Rust: what they draw has the bytes that the engine's own functions draw.
+//! The functions for C, called from Rust: they draw the same bytes as the engine's own functions.
 #![cfg(feature = "effects")]
 
 mod colors;
@@ -14,11 +14,11 @@ use mode13h_capi::target::m13_target_init;
 /// A target over bytes.
 fn target(pixels: &mut [u8], width: u32, height: u32, pitch: usize) -> Target {
     let mut made = core::mem::MaybeUninit::uninit();
-    // SAFETY: room for a target, and as many bytes as are said.
+    // SAFETY: there is room for a target, and the pixels have the stated length.
     let code =
         unsafe { m13_target_init(made.as_mut_ptr(), pixels.as_mut_ptr().cast(), pixels.len(), width, height, pitch) };
     assert_eq!(code, OK);
-    // SAFETY: made.
+    // SAFETY: the call succeeded, so the target has been written.
     unsafe { made.assume_init() }
 }
 
@@ -49,7 +49,7 @@ impl Memory {
     fn new() -> Self {
         let mut bytes = vec![0_u128; m13_size().div_ceil(16)];
         let mut context = core::ptr::null_mut();
-        // SAFETY: as many bytes as are said.
+        // SAFETY: the memory has the stated length.
         let code = unsafe { m13_init(bytes.as_mut_ptr().cast(), 16 * bytes.len(), &raw mut context) };
         assert_eq!(code, OK);
         Self { _bytes: bytes, context }

@@ -1,12 +1,12 @@
-//! What a context takes, and when.
+//! How much memory a context takes, and when.
 
 use mode13h_capi::abi::Stats;
 use mode13h_capi::draw::{m13_draw, m13_size};
 
 use crate::{Memory, material, mesh, target};
 
-/// The stages take no more than a context has for them, and nothing once it is made. (In a library for C their allocator
-/// hands out the context's own memory.)
+/// The stages allocate no more than a context has for them, and nothing once it is made. (In the C library their
+/// allocator hands out the context's own memory.)
 #[test]
 fn all_memory_is_taken_when_a_context_is_made() {
     let mut memory = None;
@@ -41,7 +41,7 @@ fn all_memory_is_taken_when_a_context_is_made() {
             (material.shade_table, material.slope_table) = (when(16), when(32));
             let mut stats = Stats { size: 24, triangles: 0, refused: 0, spans: 0, covered: 0, pixels: 0 };
             let drawn = allocation_counter::measure(|| {
-                // SAFETY: all of it is there.
+                // SAFETY: the structs are valid, and so is the memory they name.
                 let code = unsafe { m13_draw(&target, &mesh, &material, memory.context, &mut stats) };
                 assert_eq!(code, 0);
             });

@@ -1,7 +1,7 @@
 //! Two shadings side by side: the picture of one left of a divider, that of the other right of it.
 //!
-//! Both are drawn whole, one after the other, each by its own renderer. So each one's time is what it takes alone,
-//! however much of it is visible. The divider follows the mouse; a click fixes it, and another click releases it.
+//! Both are drawn whole, one after the other, each by its own renderer. So each time is that of a whole frame, however
+//! much of it is visible. The divider follows the mouse; a click fixes it, and another click releases it.
 
 use mode13h::palette::Rgb;
 use mode13h::settings::Shading;
@@ -51,7 +51,7 @@ impl Panel for Divider {
                 (true, false) => "the divider follows the mouse".to_string(),
             }
         };
-        // The picture is a new one, if only in its right half.
+        // The picture is a new one, even if only its right half has changed.
         show.number += 1;
         show.say(said);
         Ok(())

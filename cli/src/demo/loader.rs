@@ -16,8 +16,8 @@ use crate::{input, read_files};
 
 /// Time between two checks of the files.
 const PERIOD: Duration = Duration::from_millis(250);
-/// Number of checks that files must rest for before a change counts, as one may be half written. A file that is gone
-/// gets longer, because some editors replace it with a new one.
+/// Number of checks for which files must stay the same before a change counts, as one may be half written. A missing
+/// file gets longer, because some editors replace it with a new one.
 const REST: u32 = 1;
 const REST_GONE: u32 = 4;
 /// Greatest lag of a file's modification time behind the clock.
@@ -85,7 +85,7 @@ impl Loader {
             let (mut at, mut watch) = (0, Watch::new(Vec::new(), SystemTime::now()));
             loop {
                 let wanted = match asked.recv_timeout(PERIOD) {
-                    // Inputs that were passed over meanwhile are not loaded.
+                    // Inputs that were skipped meanwhile are not loaded.
                     Ok(next) => Some(asked.try_iter().last().unwrap_or(next)),
                     Err(RecvTimeoutError::Timeout) => None,
                     Err(RecvTimeoutError::Disconnected) => return,
@@ -134,7 +134,7 @@ fn stamp(file: &Path) -> Stamp {
     Some((metadata.modified().ok()?, metadata.len()))
 }
 
-/// Tells when files have changed.
+/// Notices when files have changed.
 #[derive(Clone)]
 struct Watch {
     files: Vec<PathBuf>,

@@ -161,9 +161,9 @@ fn palettes(stage: &Turntable, drawing: &Drawing) -> Choice<(String, Colors)> {
     let builtin = builtin::ALL.iter().filter(|builtin| has_colors || builtin.palette.ramps() > 0);
     let named = builtin.map(|builtin| (builtin.name.to_string(), Colors::from(builtin.palette.clone())));
     let palettes = named.chain([(input::AUTO.to_string(), Colors::Auto)]);
-    // A scene that has none leaves the DAC alone.
+    // A scene without a palette leaves the DAC alone.
     let colors = stage.colors.clone().unwrap_or(Palette::default().into());
-    // It is listed under its own name, if it has one, so that it is not listed twice.
+    // The palette is listed under its own name, if it has one, so that it is not listed twice.
     let usual = match &colors {
         Colors::Auto => input::AUTO,
         Colors::Palette(palette) => {

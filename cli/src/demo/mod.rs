@@ -86,7 +86,7 @@ trait Panel {
         Vec::new()
     }
 
-    /// Lays what it has to show over the picture.
+    /// Draws its own content over the picture.
     fn lay_over(&self, _show: &Show, _sheet: &mut Sheet) {}
 }
 
@@ -210,7 +210,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let kernel = inputs.drawing.kernel()?;
     let loader = Loader::start(Arc::clone(&inputs))?;
     let mut demo = Demo::new(inputs, kernel);
-    // Most faults of an input are found at once, so that no window need open.
+    // Most errors in an input are found at once, before a window opens.
     if let Some(first) = loader.wait(PATIENCE) {
         demo.put_on(first)?;
     }
@@ -449,7 +449,7 @@ impl Demo {
         }
     }
 
-    /// The text at the lower edge: what is being loaded, or a notice, and, while it is stopped, that time stands still.
+    /// The text at the lower edge: what is being loaded, or a notice, and, while time is stopped, a note that says so.
     fn said(&self) -> Option<String> {
         let notice = self.show.notice.as_ref().map(|(notice, _)| notice.clone());
         self.panels.scenes.loading(&self.show).or(match (notice, self.panels.motion.is_stopped()) {
@@ -498,7 +498,7 @@ mod tests {
         demo
     }
 
-    /// It says so even while it says something else.
+    /// A stopped picture says so even while another message is shown.
     #[test]
     fn a_stopped_picture_says_so_as_long_as_it_is_stopped() {
         let mut demo = demo("torus");
@@ -583,7 +583,7 @@ mod tests {
             })
             .into();
         assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
-        // Drawn again, it is the same picture.
+        // Drawn again, the picture is the same.
         demo.draw().expect("a legal scene");
         assert!(demo.title().contains("not drawn again"), "{}", demo.title());
         assert_eq!(demo.show.halves[0].timing.frame, times[1]);

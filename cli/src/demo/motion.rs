@@ -56,7 +56,7 @@ impl Motion {
         self.pose.zoom = (self.pose.zoom * factor).clamp(ZOOM.0, ZOOM.1);
     }
 
-    /// Moves by the user's input up to the time `seconds`. Returns what that changed, in words.
+    /// Applies the user's input up to the time `seconds`. Returns a text that says what has changed.
     fn move_by(&mut self, input: &Input, seconds: f64) -> Option<String> {
         let was = (self.change.is_some(), self.pose);
         let passed = (seconds - self.now).clamp(0.0, LONGEST_FRAME);

@@ -57,12 +57,12 @@ pub(crate) fn pace(milliseconds: f32, max_error: f32) -> Pace {
 }
 
 impl ShadingOptions {
-    /// Accuracy of shades, if that was asked for.
+    /// Accuracy of shades, if the command line sets one.
     fn accuracy(&self) -> Option<Accuracy> {
         self.max_error.map(Accuracy::WithinError).or(self.shading.map(Accuracy::Shading))
     }
 
-    /// Accuracy and time that are asked for with these settings of a scene.
+    /// Accuracy and time that result from the command line and these settings of a scene.
     pub(crate) fn asked_for(&self, of_scene: &Settings) -> (Accuracy, Option<f32>) {
         match self.max_time {
             Some(_) => (Accuracy::WithinError(self.max_error.unwrap_or(Pace::MAX_ERROR)), self.max_time),
@@ -99,7 +99,7 @@ impl ShadingOptions {
             false => output::note(format_args!("{accuracy}, which takes more than {max_time} ms")),
         }
         renderer.settings.accuracy = Some(accuracy);
-        // One without the vertices of the frames that were timed, so that the next frame is its first.
+        // A renderer without the vertices of the timed frames, so that the next frame is its first.
         *renderer = renderer.with_same_settings();
         Ok(())
     }

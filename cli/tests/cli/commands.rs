@@ -1,4 +1,4 @@
-//! The program as its user meets it: what it writes, what it says, and how it ends.
+//! The program from its user's point of view: the files it writes, its messages, and its exit status.
 
 mod documents;
 
@@ -214,8 +214,8 @@ fn f4_a_picture_that_no_longer_fits_leaves_the_old_one_whole() {
     tried.add(3);
 }
 
-/// Where files can only grow to this many blocks, a picture or film that needs more leaves the file that stood there, and
-/// no other.
+/// Where files can only grow to this many blocks, a picture or animation that needs more leaves the existing file
+/// untouched, and no other file behind.
 #[cfg(target_os = "linux")]
 #[track_caller]
 fn assert_old_one_is_whole(name: &str, blocks: usize) {
@@ -304,7 +304,7 @@ fn every_kernel_gives_the_same_bytes_and_is_named() {
             if by_environment {
                 command.env("MODE13H_KERNEL", kernel.name());
             } else {
-                // The option has the last word.
+                // The option overrides the environment variable.
                 command.args(["--kernel", kernel.name()]).env("MODE13H_KERNEL", "mmx");
             }
             let output = command.output().expect("started");
@@ -349,7 +349,7 @@ fn t1_a_frame_of_a_row_is_the_frame_drawn_alone() {
     tried.add(3);
 }
 
-/// Renders a film: the line that was printed, and the film.
+/// Renders an animation. Returns the line that was printed, and the file.
 #[track_caller]
 fn film(folder: &Folder, words: &str) -> (String, Decoded) {
     let line = folder.printed(&format!("render -o x.gif {words}"));
@@ -387,7 +387,7 @@ fn a_film_is_as_long_fast_large_and_colorful_as_asked_for() {
         // A shape without colours of its own is grey.
         let palette = if words.contains("copper") { "copper" } else { "grey" };
         let palette = builtin::by_name(palette).expect("a built-in").palette.on_dac();
-        // Each colour once, and black where the length of the table, a power of two, leaves room.
+        // Each colour once, filled up with black to a power of two.
         let all = palette.colors();
         let different: Vec<Rgb> = (0..256).filter(|&i| !all[..i].contains(&all[i])).map(|i| all[i]).collect();
         let (colors, rest) = film.palette.split_at(different.len());
@@ -416,8 +416,8 @@ fn a_film_shows_the_frames_of_the_row_of_pictures() {
     }
 }
 
-/// Films of every shipped scene, with a budget besides, drawn by 1, 2, 3 and 7 threads: the same bytes. Among them are fog,
-/// textures, and palettes that fade: what one thread has of a frame is in no other's.
+/// Animations of every shipped scene, and one with a budget, have the same bytes with 1, 2, 3 and 7 threads. Among them
+/// are fog, textures and fading palettes, whose state in one thread must not depend on another's.
 #[test]
 fn films_are_the_same_whatever_the_number_of_threads() {
     const FRAMES: &str = "9";
@@ -447,7 +447,7 @@ fn films_are_the_same_whatever_the_number_of_threads() {
     assert!(fades >= 1 && fogs >= 2 && textures >= 1, "{fades} fade, {textures} have textures, {fogs} fog");
 }
 
-/// One film long enough that each thread draws many frames.
+/// An animation long enough for each thread to draw many frames.
 #[test]
 fn a_film_of_many_frames_is_the_same_whatever_the_number_of_threads() {
     let folder = Folder::new();
@@ -458,11 +458,11 @@ fn a_film_of_many_frames_is_the_same_whatever_the_number_of_threads() {
     assert!(films[0] == films[1]);
 }
 
-/// The most memory, in KiB, that the program has held while it wrote a film.
+/// The peak memory, in KiB, of the program while it writes an animation.
 #[cfg(target_os = "linux")]
 fn peak_of_a_film(frames: u32) -> u64 {
     let folder = Folder::new();
-    // Round it the camera goes: a small picture that changes.
+    // The camera circles the cube: a small picture that changes.
     let words = format!("render cube -o x.gif --scale 1 --threads 2 --frames {frames}");
     let mut child = folder.program(&words).stdout(Stdio::null()).spawn().expect("started");
     let status = format!("/proc/{}/status", child.id());
@@ -476,12 +476,12 @@ fn peak_of_a_film(frames: u32) -> u64 {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     assert!(child.wait().expect("a child").success());
-    // At 35 a second: what follows itself without a change is one image, and stays as long.
+    // At 35 frames a second; unchanged frames are merged into one image that stays as long.
     assert_eq!(hundredths_of(&folder.read("x.gif")), (100 * u64::from(frames)).div_ceil(35), "the film's length");
     peak
 }
 
-/// How long a film is, in 1/100 s, read image by image.
+/// The duration of an animation in 1/100 s, read image by image.
 #[cfg(target_os = "linux")]
 fn hundredths_of(file: &[u8]) -> u64 {
     let mut options = gif::DecodeOptions::new();
@@ -494,8 +494,8 @@ fn hundredths_of(file: &[u8]) -> u64 {
     sum
 }
 
-/// A film of any length takes as much memory as a short one: 32 frames a thread wait, each of 64,000 bytes and as much again
-/// while it is made. Keeping the additional frames compared here would take ten times that.
+/// An animation of any length takes as much memory as a short one: 32 frames per thread are pending, each of 64,000
+/// bytes and as much again while it is made. Keeping the additional frames compared here would take ten times that.
 #[cfg(target_os = "linux")]
 fn films_of(tried: &mut Tried, frames: u32) {
     const MIB: u64 = 1024;
@@ -503,8 +503,8 @@ fn films_of(tried: &mut Tried, frames: u32) {
     tried.worst("MiB for the short film", short as f64 / 1024.0);
     tried.worst("MiB for the long film", long as f64 / 1024.0);
     assert!(short > MIB, "{short} KiB were read");
-    // How full the two lists of 64 frames are at once, and what the allocator keeps of what was given back, is chance: both
-    // lists are 8 MiB. A film of 2,000 frames that is kept whole takes 122.
+    // How full the two lists of 64 frames are at the same time, and how much freed memory the allocator keeps, is
+    // chance; both lists together take 8 MiB. An animation of 2,000 frames that is kept whole takes 122.
     assert!(long <= short + 8 * MIB, "{short} KiB for 200 frames, {long} KiB for {frames}");
     tried.add(frames.into());
 }
@@ -524,7 +524,7 @@ fn film_long_of_a_hundred_thousand_frames() {
     films_of(&mut tried, 100_000);
 }
 
-/// The frames of an animated PNG as they are shown, in colours.
+/// The frames of an animated PNG as displayed, in colours.
 fn shown(bytes: &[u8]) -> Vec<Vec<Rgb>> {
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     decoder.set_transformations(png::Transformations::EXPAND);
@@ -550,7 +550,7 @@ fn shown(bytes: &[u8]) -> Vec<Vec<Rgb>> {
     all
 }
 
-/// The three kinds of film of a scene, one that moves and one whose palette fades, show the same.
+/// The three animation formats show the same, for a scene that moves and for one whose palette fades.
 #[test]
 fn films_of_all_kinds_show_the_same() {
     let folder = Folder::new();
@@ -573,7 +573,7 @@ fn films_of_all_kinds_show_the_same() {
             let planes = frame.strip_prefix(b"FRAME\n").expect("a frame");
             for (i, color) in colors.iter().enumerate() {
                 let (r, g, b) = (f64::from(color.r), f64::from(color.g), f64::from(color.b));
-                // The luma of ITU-R BT.601; the rest is tested where it is made.
+                // The luma of ITU-R BT.601; unit tests cover the rest.
                 let y = 16.0 + 219.0 * (0.299 * r + 0.587 * g + 0.114 * b) / 255.0;
                 assert!((f64::from(planes[i]) - y).abs() <= 0.5 + 0.0015, "{color:?}: {}", planes[i]);
             }
@@ -581,8 +581,8 @@ fn films_of_all_kinds_show_the_same() {
     }
 }
 
-/// A model with all that it may name, and a scene with all that it may; each by every command that writes, under its own
-/// name, by links of both kinds, and as one of a row.
+/// A model and a scene with every kind of file that they may name. Every command that writes tries to overwrite each of
+/// these, under its own name, through links of both kinds, and as one of a numbered series.
 #[cfg(unix)]
 #[test]
 fn f4_what_was_read_is_never_overwritten() {
@@ -596,7 +596,7 @@ fn f4_what_was_read_is_never_overwritten() {
     let face = "f 1/1 2/1 3/1\n";
     let faces = format!("usemtl tin\n{face}usemtl wood\n{face}");
     folder.put("box.obj", format!("mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\n{faces}"));
-    // Without texture coordinates no texture is looked at, and is the model's all the same.
+    // Without texture coordinates no texture is read, but it still belongs to the model.
     folder.put("bare.obj", "mtllib box.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl tin\nf 1 2 3\n");
     folder.succeed("palette grey -o own.gpl");
     folder.succeed("palette copper -o faded.pal");
@@ -653,11 +653,11 @@ fn f4_what_was_read_is_never_overwritten() {
     for (name, before) in names.iter().zip(before) {
         assert!(fs::read(path(name)).ok() == before, "{name}");
     }
-    // What was not read may be, as ever.
+    // Files that were not read may be overwritten, as always.
     folder.succeed("render cube -o box.png");
 }
 
-/// What a command writes is of its own kind, and no second file of the same command.
+/// A command writes only files of its own kind, and never overwrites another file that it has written itself.
 #[test]
 fn f4_what_is_of_another_kind_is_not_overwritten() {
     let mut tried = Tried::new("f4_what_is_of_another_kind_is_not_overwritten", 5);
@@ -665,7 +665,7 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
     for name in ["house.obj", "house.mtl", "report.html", "Cargo.toml"] {
         folder.put(name, "what stood there");
     }
-    // Integers know no budget, so the status does not hang on the clock.
+    // The integer path has no budgets, so the status does not depend on the clock.
     let cost = "cost cube --frames 1 --seconds 0 --arithmetic fixed -o";
     for (words, status, line) in [
         ("dos cube -o house.obj", 2, "house.obj: the name of a DOS program must end in .exe, that of a floppy in .img"),
@@ -694,7 +694,8 @@ fn fed(command: &mut Command, bytes: &[u8]) -> ExitStatus {
     child.wait().expect("ended")
 }
 
-/// A model or scene read from a pipe, or gzipped, gives the same picture. Files it names are found beside it, or here.
+/// A model or scene read from a pipe, or gzipped, gives the same picture. Files that it names are found beside it, or
+/// in the current directory.
 #[test]
 fn input_comes_by_a_pipe_or_packed() {
     use flate2::Compression;
@@ -738,7 +739,8 @@ fn standard_input_is_read_once_and_shown_as_often_as_asked_for() {
     assert!(folder.read("mode13h-0001.png") == folder.read("mode13h-0003.png"));
 }
 
-/// A model and a scene with it play an animation of one second: a moment of it is told by `--time`, and a film is one round.
+/// A model, and a scene that contains it, play an animation of one second: `--time` picks a moment, and an exported
+/// animation is one round.
 #[test]
 fn an_animation_is_played() {
     let folder = Folder::new();
@@ -773,7 +775,7 @@ const GROWS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"no
     "buffers": [{"byteLength": 68, "uri": "data:application/octet-stream;base64,AACAvwAAgL8AAAAAAACAPwAAgL8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AACAPwAAgD8="}],
     "animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 1, "path": "scale"}}]}]}"#;
 
-/// A palette that is made for a model or a scene with one, is for its whole animation, not only for its beginning.
+/// A palette made for a model, or for a scene with one, covers its whole animation, not only the beginning.
 #[test]
 fn a_palette_is_made_for_an_animation() {
     let folder = Folder::new();
@@ -797,7 +799,7 @@ fn a_palette_is_made_for_an_animation() {
     assert!(palette("grows") != palette("still"));
 }
 
-/// A triangle that goes aside in its first animation, and up in its second.
+/// A triangle that moves sideways in its first animation, and up in its second.
 const TWO_CLIPS: &str = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
     "accessors": [
@@ -833,7 +835,7 @@ fn an_animation_is_chosen() {
     assert!(!folder.path("y.png").exists());
 }
 
-/// A model's own lights and camera are taken, unless the command line has a view of its own.
+/// A model's own lights and camera are used, unless the command line sets a view.
 #[test]
 fn a_model_brings_lights_and_a_camera() {
     let folder = Folder::new();
@@ -845,13 +847,13 @@ fn a_model_brings_lights_and_a_camera() {
         folder.read("x.png")
     };
     let own = picture("");
-    // The file's stands at (0, 1, 5) and looks along −z; its angle is of its own.
+    // The file's camera is at (0, 1, 5) and looks along −z; it has its own angle.
     let same_view = picture("--camera 0,1,5:0,1,0");
     let studio = picture("--up y");
     assert!(own != same_view && own != studio && same_view != studio);
 }
 
-/// A program for DOS says what a scene loses in it.
+/// `dos` reports what the DOS program leaves out of a scene.
 #[test]
 fn dos_says_what_is_left_out() {
     let folder = Folder::new();
@@ -890,7 +892,7 @@ fn f4_an_interrupted_film_leaves_nothing_behind() {
             .stderr(Stdio::piped())
             .spawn()
             .expect("started");
-        // Until some of it is there, beside its name.
+        // Wait until part of the temporary file has been written.
         let is_begun = |name: &str| {
             let length = fs::metadata(folder.path(name)).map_or(0, |metadata| metadata.len());
             name.starts_with('.') && length > 100_000
@@ -910,12 +912,12 @@ fn f4_an_interrupted_film_leaves_nothing_behind() {
 #[test]
 fn f4_a_film_that_no_longer_fits_leaves_the_old_one_whole() {
     let mut tried = Tried::new("f4_a_film_that_no_longer_fits_leaves_the_old_one_whole", 3);
-    // In 200 blocks of 512 or 1,024 bytes the first frames fit, and the film does not.
+    // In 200 blocks of 512 or 1,024 bytes the first frames fit, but the whole animation does not.
     assert_old_one_is_whole("x.gif", 200);
     tried.add(3);
 }
 
-/// The near distance that the plan names, as it is printed, is enough.
+/// The near distance that the plan prints is large enough.
 #[test]
 fn the_near_distance_that_a_plan_names_is_enough() {
     let folder = Folder::new();
@@ -940,7 +942,7 @@ fn a_plan_is_a_table_of_a_hundred_columns() {
     let folder = Folder::new();
     for scene in shipped::ALL.iter().map(|shipped| shipped.name).chain(["sphere"]) {
         let text = folder.printed(&format!("plan {scene}"));
-        // The moment of its picture.
+        // The scene's `picture` moment.
         let at =
             scene.parse::<shipped::Shipped>().map_or(0.0, |shipped| shipped.load().expect("a scene").scene.picture);
         assert!(text.starts_with(&format!("{scene} at {at} s, 1/35 s after the frame before it: ")), "{text}");
@@ -957,7 +959,7 @@ fn a_plan_is_a_table_of_a_hundred_columns() {
     };
     assert_eq!(row("hidden-surfaces")[1..], ["on", "depth-buffer", "torus", "is", "not", "convex"]);
     assert_eq!(row("fog")[1..], ["off", "the", "scene", "has", "none"]);
-    // Everything but where the columns stand is the same for all, and is said once.
+    // Rows that are the same for all objects are printed once.
     let text = folder.printed("plan fog");
     assert_eq!(text.matches("\n  lighting ").count(), 1, "{text}");
     assert_eq!(text.matches("\n  near-clipping ").count(), 13, "{text}");
@@ -1012,10 +1014,10 @@ fn a_plan_with_times_has_a_price_for_each_effect() {
     let folder = Folder::new();
     let json = folder.json("plan torus --json --measure");
     let effects = json["objects"][0]["effects"].as_array().expect("a list");
-    // How large they are depends on the machine's rest: what is noise and what is not has a test beside the code.
+    // The values depend on the load of the machine; a unit test covers what counts as noise.
     assert!(effects.iter().all(|effect| effect["ns_per_frame"].is_u64()), "{effects:#?}");
 
-    // The integer path has no fog: it has no price.
+    // The integer path has no fog, so fog has no price.
     let words = "plan torus --json --measure --arithmetic fixed";
     let json = folder.json(words);
     let effects = json["objects"][0]["effects"].as_array().expect("a list");
@@ -1042,18 +1044,18 @@ fn with_no_display_one_frame_is_saved() {
         assert_eq!(folder.names().len(), number);
     }
     assert_eq!(folder.read("mode13h-0002.png"), folder.read("mode13h-0003.png"));
-    // Of a scene that begins in the dark, the moment that it names for a picture.
+    // A scene that begins in the dark is saved at its `picture` moment.
     assert!(folder.run("flash").status.success());
     let bright =
         folder.png("mode13h-0004.png").colors().into_iter().filter(|color| color.brightness() > 60_000).count();
-    // At time 0 there are none.
+    // At time 0 no pixel is bright.
     assert!(bright > 64_000 / 4, "{bright} pixels");
 }
 
 #[test]
 fn palettes_are_converted_from_each_format_to_each() {
     let folder = Folder::new();
-    // Its colours are the DAC's own, so that no format rounds them.
+    // Its colours are exact on the DAC, so that no format rounds them.
     let colors = *builtin::by_name("bios").expect("a built-in").palette.colors();
     let extensions: Vec<&str> = palette_file::FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
     for from in &extensions {
@@ -1069,7 +1071,7 @@ fn palettes_are_converted_from_each_format_to_each() {
     assert!(extensions.len() >= 5);
 }
 
-/// `--palette` and the key of a scene take the palette of the same pictures, and `palette` converts it.
+/// `--palette` and a scene's `palette` accept the same indexed pictures, and `palette` converts their palettes.
 #[test]
 fn a_picture_lends_its_palette() {
     let folder = Folder::new();
@@ -1133,7 +1135,7 @@ fn palettes_are_made_for_models() {
         text.lines().skip(33).map(|line| line.split(", entries").next().expect("a line")).collect();
     assert_eq!(surfaces, ["grass: a ramp", "bricks: colours of textures", "tiles: a ramp"]);
 
-    // A texture that cannot be read is a warning; the surface has a ramp then.
+    // A texture that cannot be read gives a warning, and the surface gets a ramp.
     let output = folder.run("palette --from data:chest.obj");
     assert!(output.status.success(), "{output:?}");
     let warnings = String::from_utf8(output.stderr).expect("text");
@@ -1167,44 +1169,45 @@ fn a_model_with_colours_is_shown_in_them() {
     let auto = picture("--palette auto");
     assert!(picture("") == auto);
     assert!(green(&auto) > 0.05, "grass");
-    // It is the palette that `palette --from` writes, whatever moment is drawn.
+    // The palette is the one that `palette --from` writes, whatever moment is drawn.
     folder.succeed(&format!("palette --from {house} -o house.gpl"));
     let later = picture("--time 1.5");
     let written = palette_file::parse_named("house.gpl", &folder.read("house.gpl")).expect("a palette");
     assert!(auto.palette == written.colors() && later.palette == written.colors());
     assert!(later != auto);
-    // In palettes without ramps the nearest that they have: of that one most of the same.
+    // In palettes without ramps, the nearest entries are drawn.
     for palette in ["cube", "bios", "house.gpl"] {
         assert!(green(&picture(&format!("--palette {palette}"))) > 0.05, "{palette}");
     }
-    // In ramps one each; the bricks' texture is there, too.
+    // With ramps, each material has one; the brick texture is there, too.
     let png = picture("--palette materials-8x32");
     assert!(png.palette == builtin::MATERIALS_8X32.on_dac().colors());
     let ramps: Vec<bool> = (0..8).map(|ramp| png.pixels.iter().any(|&pixel| pixel > 0 && pixel / 32 == ramp)).collect();
     assert!(ramps[0] && ramps[2], "grass in the first ramp, tiles in the third");
     assert_eq!(green(&png), 0.0);
-    // The 16.16 path has no textures: there the walls have a ramp of their own.
+    // The 16.16 path has no textures, so the walls get a ramp of their own.
     assert!(green(&picture("--arithmetic fixed")) > 0.05);
-    // In the window, too: with no display, what it shows first, framed for the whole turn as in a row.
+    // The window uses the same palette: without a display it saves its first picture, framed for the whole turn as in a
+    // series.
     let output = folder.run(house);
     assert!(output.status.success(), "{output:?}");
     folder.succeed(&format!("render {house} -o row%d.png --frames 2 --turn 360"));
     assert_eq!(folder.png("mode13h-0001.png"), folder.png("row0.png"));
 
-    // Shapes have no colours of their own: they are grey as ever, unless asked for.
+    // Shapes have no colours of their own: they stay grey unless a palette is given.
     assert!(folder.picture("cylinder") == folder.picture("cylinder --palette grey"));
     let auto = Png::decode(&folder.picture("cylinder --palette auto"));
     assert!(auto.colors().into_iter().all(|color| color.r == color.b));
 
-    // Of colours and a texture that cannot be read, the colours are left, and one line says so.
+    // If a texture cannot be read, the colours remain, and a warning says so.
     let said = folder.said("render data:chest.obj -o chest.png");
-    // And one that its place is left out.
+    // A second warning says that the texture's placement is ignored.
     assert_eq!(said.lines().count(), 2);
     assert!(folder.png("chest.png").colors().into_iter().any(|color| color.r > color.b + 40), "wood");
 }
 
-/// A single picture of a model file fills nine tenths of its width or height and is centred, within a pixel, from whatever
-/// side; the frames of a row share one camera. Options override what is chosen.
+/// In a single picture, a model from a file fills nine tenths of the width or height and is centred to within a pixel,
+/// from any side; the frames of a series share one camera. Options override the automatic choice.
 #[test]
 fn a_single_picture_of_a_model_is_framed_as_it_stands() {
     let mut tried = Tried::new("a_single_picture_of_a_model_is_framed_as_it_stands", 12);
@@ -1259,7 +1262,7 @@ fn a_scene_may_ask_for_a_palette_made_for_it() {
     assert!(folder.picture("auto.toml --palette cube") == folder.picture("cube.toml"));
     let png = Png::decode(&auto);
     let background = png.colors()[0];
-    // A step of the card, at most.
+    // At most one step of the DAC.
     assert!(background.distance_squared(Rgb::new(0x20, 0x30, 0x60)) <= 3 * 4 * 4, "{background:?}");
     assert!(green(&png) > 0.005, "grass");
     let magenta = |color: Rgb| color.r > 100 && color.b > 60 && color.g < 30;
@@ -1358,7 +1361,7 @@ fn scenes_are_listed_and_copied_and_nothing_is_overwritten() {
     folder.fails("scenes copy fog", 1, "fog.toml: already exists; --force");
     assert_eq!(folder.read("fog.toml"), b"what stood there");
     folder.fails("scenes copy fog -o none/x.toml", 1, "none does not exist");
-    // A copy is the scene.
+    // A copy draws the same as the scene.
     assert!(folder.picture("other.toml --time 1") == folder.picture("fog --time 1"));
 }
 
@@ -1369,7 +1372,7 @@ fn every_shipped_scene_is_drawn_and_a_scene_comes_before_a_shape() {
         let png = Png::decode(&folder.picture(&format!("{} --time 1.5", scene.name)));
         assert_eq!(png.size, (320, 200), "{}", scene.name);
     }
-    // The teapot of the scene has its palette, not that of a shape.
+    // The name stands for the scene `teapot` with its own palette, not for the shape.
     assert_eq!(Png::decode(&folder.picture("teapot")).palette[200], builtin::COPPER.on_dac()[200]);
 }
 
@@ -1382,7 +1385,7 @@ fn words_have_the_last_word_over_a_scene() {
     assert!(said.contains(": phong, float vertices,"), "{said}");
     let (said, _) = stats("phong --shading flat --hidden-surfaces scan-line --arithmetic fixed");
     assert!(said.contains(": flat, fixed vertices,") && said.contains(" scan-line: "), "{said}");
-    // Within an error the shadings that faces got are counted, and no other is named.
+    // With an error budget, the shadings that faces got are counted, and no others are listed.
     let (said, _) = stats("phong --max-error 4");
     assert!(said.contains(": within 4 shades (") && said.contains(" gouraud-8.8-reseeded"), "{said}");
     assert!(said.contains("), float vertices,"), "{said}");
@@ -1395,7 +1398,7 @@ fn words_have_the_last_word_over_a_scene() {
     assert!(stats("crate --time 0.3 --mapping perspective").1 == perspective);
 }
 
-/// Enlarged, from another place, before another colour, with dither: what is asked for is seen.
+/// The options for zoom, camera, background and dither take effect.
 #[test]
 fn the_view_is_as_asked_for() {
     let folder = Folder::new();
@@ -1403,16 +1406,16 @@ fn the_view_is_as_asked_for() {
     let own = picture("sphere");
     let covered = |png: &Png| png.pixels.iter().filter(|pixel| **pixel != png.pixels[0]).count();
     assert!(picture("sphere --zoom 1") == own);
-    // A view twice as narrow, or from twice as far away: four times the area, and a quarter, except for perspective.
+    // Enlarging by 1.05 multiplies the area by 1.05²; from twice as far away it is a quarter, apart from perspective.
     let (larger, smaller) = (picture("sphere --zoom 1.05"), picture("sphere --zoom 0.5"));
     let part = |of| covered(of) as f64 / covered(&own) as f64;
     assert!((part(&larger) - 1.05 * 1.05).abs() < 0.01, "{}", part(&larger));
     assert!((0.2..0.25).contains(&part(&smaller)), "{}", part(&smaller));
-    // From the other side a torus under a sun before it is dark; beyond it there is nothing to be seen.
+    // From behind, a torus lit from the front is dark; looking away from it shows nothing.
     assert!(picture("torus --camera 0,0,-3") != picture("torus --camera 0,0,3"));
     assert!(picture("torus --camera 0,0,3:0,0,0") == picture("torus --camera 0,0,3"));
     assert_eq!(covered(&picture("torus --camera 0,0,3:0,0,9")), 0);
-    // A scene's own camera that moves stands still then.
+    // A moving camera of the scene stands still then.
     let still = |time: &'static str| picture(&format!("interlock --camera 0,0,4 --time {time}"));
     assert!(still("0") == still("1"));
     for (word, color) in [("#ff0000", Rgb::new(255, 0, 0)), ("00ff00", Rgb::new(0, 255, 0))] {
@@ -1422,12 +1425,12 @@ fn the_view_is_as_asked_for() {
     assert_eq!(picture("cube --background 7").pixels[0], 7);
     let [with, without] = ["--dither ordered", "--no-dither"].map(|words| picture(&format!("still {words}")));
     assert!(with == picture("still") && with != without && without != picture("still --dither blue-noise"));
-    // With nothing said a picture is of the moment that the scene names; a film and a turn begin at 0.
+    // By default a picture shows the moment that the scene names; animations and turns begin at 0.
     assert!(picture("flash") == picture("flash --time 1.11"));
     assert!(picture("flash --turn 0") == picture("flash --time 0"));
 }
 
-/// What a scene shows in the ramps of its palette keeps its colours in one that is made for it.
+/// Surfaces drawn in the ramps of a scene's palette keep their colours in a palette made for it.
 #[test]
 fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
     let folder = Folder::new();
@@ -1436,12 +1439,12 @@ fn a_palette_made_for_a_scene_keeps_the_colors_of_its_ramps() {
         let (own, made) = (colors(scene), colors(&format!("{scene} --palette auto")));
         let far = own.iter().zip(&made).map(|(a, b)| f64::from(a.distance_squared(*b)).sqrt());
         let mean = far.sum::<f64>() / own.len() as f64;
-        // Of three steps of a channel on the card one in each channel. In greys they would be 30 and more apart.
+        // On average within one step of the DAC in each of the three channels. In greys they would be 30 or more apart.
         assert!(mean < 4.0 * 3_f64.sqrt(), "{scene}: {mean}");
     }
 }
 
-/// A scene has a time; `--turn` takes one that moves further in its round, and leads the camera round another.
+/// `--turn` advances a moving scene in its round, and moves the camera around any other.
 #[test]
 fn scenes_are_drawn_at_their_time() {
     let folder = Folder::new();
@@ -1457,7 +1460,7 @@ fn scenes_are_drawn_at_their_time() {
     assert!(line.contains(" 30 frames ") && line.contains(", 3.00 s, "), "{line}");
 }
 
-/// One pixel in words and as JSON, which say the same as the picture.
+/// The explanation of a pixel, in words and as JSON, agrees with the picture.
 #[test]
 fn explain_says_why_a_pixel_has_its_byte() {
     let folder = Folder::new();
@@ -1500,12 +1503,12 @@ fn explain_names_material_and_line() {
     let json = folder.json("explain m.obj --pixel 150,90 --json");
     let face = &json["faces"][0];
     assert_eq!((&face["object"], &face["line"], &face["material"]), (&"m".into(), &8.into(), &"wall".into()));
-    // A shape has neither.
+    // A shape has neither materials nor lines.
     let json = folder.json("explain cone --pixel 150,100 --json");
     assert_eq!((&json["faces"][0]["line"], &json["faces"][0]["material"]), (&Value::Null, &Value::Null));
 }
 
-/// A row in characters, as JSON and as a chart.
+/// A row is shown in characters, as JSON and as a chart.
 #[test]
 fn a_pixel_is_explained_alike_by_a_time_and_by_the_error_that_fits() {
     let folder = Folder::new();
@@ -1514,7 +1517,7 @@ fn a_pixel_is_explained_alike_by_a_time_and_by_the_error_that_fits() {
         assert!(output.status.success(), "{limit}");
         String::from_utf8(output.stdout).expect("text")
     };
-    // The least error fits, which is half a shade.
+    // The smallest error, half a shade, fits.
     assert_eq!(explained("--max-time 100000"), explained("--max-error 0.5"));
 }
 
@@ -1563,7 +1566,7 @@ fn explain_refuses_what_is_not_there() {
     assert!(folder.names().is_empty());
 }
 
-/// Two squares that meet at 90°: with an edge between them, as flat ones have, or without.
+/// Two squares that meet at 90°: with a sharp edge between them, as by flat shading, or without.
 #[test]
 fn a_crease_angle_is_for_models() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! `mode13h cost`, as its user meets it, and the study it makes.
+//! `mode13h cost` from its user's point of view, and the study that it makes.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -29,12 +29,12 @@ fn assert_errors(errors: &Value) {
     assert!(0.0 <= mean && mean <= rms && rms <= max && max <= 255.0 && (0.0..=1.0).contains(&share), "{errors}");
 }
 
-/// The median lies between the quartiles, and a ratio in its interval.
+/// Checks that the median lies between the quartiles, and a ratio within its interval.
 #[track_caller]
 fn assert_time(row: &Value) {
     let [low, time, high] = ["lower_quartile", "median", "upper_quartile"].map(|of| number(&row["ns_per_frame"][of]));
     assert!(0.0 < low && low <= time && time <= high, "{row}");
-    // A shading's interval stands beside its ratio, that of the others in one list with it.
+    // A shading has its ratio and its interval in two fields, other rows have both in one list.
     let (ratio, interval) = match row.get("ratio_interval") {
         Some(interval) => (&row["ratio"], interval),
         None => (&row["ratio"][0], &row["ratio"][1]),
@@ -51,7 +51,7 @@ fn everything_is_measured_and_written() {
     let words = "cost torus --frames 3 --seconds 0 --json -o out";
     let output = folder.run(words);
     let json: Value = serde_json::from_slice(&output.stdout).unwrap_or_else(|_| panic!("{output:?}"));
-    // The time is the machine's matter; the status says what the warnings say of accuracy.
+    // Times depend on the machine; the exit status reflects only the warnings about accuracy.
     let warnings: Vec<&str> = json["warnings"].as_array().expect("a list").iter().filter_map(Value::as_str).collect();
     assert!(
         !warnings.iter().any(|warning| warning.contains(" keeps ") || warning.contains("its bound")),
@@ -83,11 +83,11 @@ fn everything_is_measured_and_written() {
         assert_eq!(itself, row["ratio"] == 1.0 && row["ratio_interval"][0] == 1.0 && row["ratio_interval"][1] == 1.0);
     }
     let of = |shading: Shading| &shadings[Shading::ALL.iter().position(|of| *of == shading).expect("listed")];
-    // What the shadings promise, and what they do not.
+    // Some shadings promise a bound, some do not.
     assert!(number(&of(Shading::Gouraud88Reseeded)["error_gouraud"]["max"]) < 1.0);
     assert!(number(&of(Shading::Phong)["error_lit"]["rms"]) < number(&of(Shading::Flat)["error_lit"]["rms"]));
-    // Where cover is exact, another face than in the truth shows only where two depths differ by no more than rounding:
-    // in the same pixels, however they are shaded.
+    // Where cover is exact, a pixel shows a face other than the true one only if two depths differ by no more than
+    // rounding: in the same pixels, whatever the shading.
     let cover_errors = |shading| of(shading)["cover_errors"].as_u64().expect("a count");
     for shading in
         [Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudHyperbolic, Shading::Phong, Shading::Float]
@@ -95,7 +95,7 @@ fn everything_is_measured_and_written() {
         assert_eq!(cover_errors(shading), cover_errors(Shading::Gouraud88), "{shading}");
     }
     assert!(cover_errors(Shading::GouraudVintage) > 1_000 * cover_errors(Shading::Gouraud88).max(1));
-    // None is nearer to `lit`.
+    // No shading is nearer to `lit`.
     assert_eq!(of(Shading::Phong)["efficient"], true);
 
     let budgets = json["budget"].as_array().expect("a list");
@@ -116,7 +116,7 @@ fn everything_is_measured_and_written() {
         assert!(number(&row["frames"]) >= 200.0 && (0.0..=1.0).contains(&number(&row["within"])), "{row}");
         let [mean, max] = ["mean_error", "max_error"].map(|key| number(&row[key]));
         assert!((0.5..=16.0).contains(&mean) && mean <= max && BUDGETS.contains(&max), "{row}");
-        // Every frame keeps within the error that was chosen for it, or within what rounding needs.
+        // Every frame stays within the error that was chosen for it, or within what rounding needs.
         assert!(number(&row["largest"]) > 0.0 && number(&row["largest"]) <= max.max(0.52), "{row}");
         assert!(i == 0 || number(&times[i - 1]["max_time_ns"]) < number(&row["max_time_ns"]), "{row}");
     }
@@ -137,7 +137,7 @@ fn everything_is_measured_and_written() {
     let option = |name: &str| options.iter().find(|row| row["name"] == name).expect("a choice");
     let rms = |name: &str, of: &str| number(&option(name)["error_gouraud_unrounded"][of]);
     assert!(rms("whole pixels", "rms") > rms("1/256 pixel", "rms"));
-    // Where dither earns its keep.
+    // Dither pays off in the means of blocks.
     assert!(rms("ordered", "rms_of_blocks") < rms("none", "rms_of_blocks"));
     assert!(option("back-faces")["cover_errors"].as_u64() > option("scan-line")["cover_errors"].as_u64());
 
@@ -159,7 +159,7 @@ fn everything_is_measured_and_written() {
         samples.lines().filter(|line| line.contains(&format!(",{kind},{name},3,"))).count() as u64
     };
     assert!(rounds >= 7 && times("shading", "gouraud-8.8") == rounds && times("budget", "4") == rounds, "{rounds}");
-    // What is slow sits out rounds, not all of them.
+    // A slow shading sits out some rounds, but not all.
     assert!((rounds / 4..=rounds).contains(&times("shading", "gouraud-tessellated")));
     assert!(
         lines.all(|line| line.rsplit(',').next().is_some_and(|time| time.parse::<u64>().is_ok_and(|time| time > 0)))
@@ -177,7 +177,7 @@ fn rungs_that_are_asked_for_are_the_rungs_there_are() {
     assert!(folder.names().is_empty(), "without -o nothing is written");
 }
 
-/// Light from everywhere: one shade, which every shading has.
+/// With ambient light alone there is one shade, which every shading must give.
 #[test]
 fn where_the_picture_is_the_truth_nothing_is_off() {
     let mut scene = Scene::new();
@@ -209,7 +209,7 @@ fn where_the_picture_is_the_truth_nothing_is_off() {
     assert!((all / 4..=all).contains(&samples), "{samples} of {all}");
 }
 
-/// The text begins with the summary and has what the page has; 16.16 vertices have no budget, and no table of any.
+/// The text begins with the summary and has the page's contents; 16.16 vertices have no budgets, so no table of them.
 #[test]
 fn the_text_begins_with_what_a_newcomer_wants_to_know() {
     let folder = Folder::new();
@@ -228,7 +228,7 @@ fn the_text_begins_with_what_a_newcomer_wants_to_know() {
     }
 }
 
-/// A study that cannot be written when it is made, though it could be when it began, is kept elsewhere.
+/// A study that cannot be written when it is finished, although it could when it began, is saved elsewhere.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_study_is_not_lost_when_it_cannot_be_written() {
@@ -270,7 +270,7 @@ fn what_is_wrong_is_said_in_one_line() {
         ("torus --frames 0", 2, "--frames"),
         ("nothing.toml", 1, "nothing.toml"),
         ("torus -o /dev/null", 1, "/dev/null: is not a directory"),
-        // Before anything is measured.
+        // Rejected before anything is measured.
         #[cfg(target_os = "linux")]
         ("torus -o /proc/a/b", 1, "/proc/a: no file can be created in the directory /proc"),
         ("torus --seconds -1", 2, "--seconds"),
@@ -297,7 +297,7 @@ fn an_interrupted_study_leaves_nothing_behind() {
     assert!(output.stdout.is_empty() && folder.names().is_empty());
 }
 
-/// Where valgrind is: each shading's instructions, and the times with the kernel that they were counted of.
+/// With valgrind installed: each shading's instructions, and times taken with the kernel for which they were counted.
 #[test]
 fn instructions_are_counted_where_valgrind_is() {
     if !is_here("valgrind", Command::new("valgrind").arg("--version").output().is_ok()) {

@@ -41,7 +41,7 @@ fn write_grid(path: &Path, faces: usize, full: bool) -> io::Result<usize> {
     Ok(side * side * 2)
 }
 
-/// Bytes, the most that this process has had in memory so far.
+/// The peak memory of this process so far, in bytes.
 #[cfg(target_os = "linux")]
 fn peak_memory() -> u64 {
     let status = fs::read_to_string("/proc/self/status").expect("Linux has it");
@@ -49,10 +49,10 @@ fn peak_memory() -> u64 {
     line.trim().strip_suffix(" kB").expect("in kB").parse::<u64>().expect("a number") * 1024
 }
 
-/// Names the file to a child of this test program, which loads it and says what that took.
+/// Passes the file's name to a child of this test program, which loads it and reports the memory that this took.
 const CHILD: &str = "MODE13H_F2_FILE";
 
-/// What a face of a large model may take while it is loaded, at most, all vertices and lists included. A grid has half
+/// The most bytes per face that loading a large model may take, with all vertices and lists included. A grid has half
 /// as many vertices as faces. At the peak, when normals are averaged, that is (bytes, times how many for each face):
 /// positions, normals, places of points and normals known (12 + 12 + 4 + 16) × ½, triangle 12, surface 2, its normal
 /// and area 32, the class of each corner 4 × 3, sums and means (32 + 16) × ½, the normal of each corner 16 × 3: 152.
@@ -90,7 +90,7 @@ fn load_in_a_child(test: &str, faces: usize, full: bool) {
 
 #[cfg(target_os = "linux")]
 fn load_as_a_child(path: &Path) {
-    // The code that loads is in memory from here on.
+    // Loads a small model first, so that the loading code is already in memory.
     let warm = model_file::load(crate::support::workspace::root().join("tests/data/house.obj"));
     assert!(warm.is_ok(), "{warm:?}");
     let before = peak_memory();
@@ -128,7 +128,7 @@ fn f2_long_ten_million_faces() {
     load_in_a_child("f2_long_ten_million_faces", 10_000_000, false);
 }
 
-/// A bar where a person sees it, and nothing where none does. The terminal is made by `script`, of util-linux.
+/// A progress bar is shown in a terminal, and nothing elsewhere. The terminal is made by `script`, of util-linux.
 #[cfg(target_os = "linux")]
 #[test]
 #[ignore = "a file of 60 MB: cargo test --release --test cli f2_long -- --ignored"]
@@ -150,7 +150,7 @@ fn f2_long_progress_is_shown_on_a_terminal() {
         .expect("util-linux is there");
     let said = String::from_utf8_lossy(&shown.stdout);
     assert!(shown.status.success() && said.contains(" read") && said.contains("MiB"), "{said:?}");
-    // That takes longer than the reading.
+    // Making the mesh takes longer than reading the file.
     assert!(said.contains("making the mesh"), "{said:?}");
     tried.add(1);
 }
@@ -180,7 +180,7 @@ fn f4_no_room_at_any_block() {
         assert!(folder.program(words).status().expect("started").success());
         let new = fs::read(&path).expect("written");
         let blocks = new.len().div_ceil(512);
-        // Every block of a short file; of a long one some, and the last ones.
+        // Every block of a short file; some blocks of a long one, and the last ones.
         let step = blocks / 12 + 1;
         for limit in (0..=blocks).filter(|limit| limit % step == 0 || limit + 2 > blocks) {
             fs::write(&path, OLD).expect("written");
@@ -198,7 +198,7 @@ fn f4_no_room_at_any_block() {
     }
 }
 
-/// A device that is always full, behind the name.
+/// The name is a link to a device that is always full.
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_a_full_device() {
@@ -213,8 +213,8 @@ fn f4_a_full_device() {
     }
 }
 
-/// No right to write: a folder that only its owner may write in, and a file in it that all may read. Tests that run as
-/// root, whom no rights hold back, run the program as nobody (65534).
+/// No permission to write: a folder that only its owner may write to, and a file in it that everyone may read. Tests
+/// that run as root, whom permissions do not stop, run the program as nobody (65534).
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_no_right_to_write() {
@@ -226,8 +226,9 @@ fn f4_no_right_to_write() {
             let folder = Folder::new();
             let place = folder.path("place");
             fs::create_dir(&place).expect("made");
-            // Nobody must be able to reach and run it. Copied by another program: a copy that was open for writing here
-            // while another test started a process could not be run as long as that process holds on to it.
+            // The user nobody must be able to reach and run it. Another program makes the copy: if it were open for
+            // writing here while another test starts a process, it could not be run as long as that process keeps it
+            // open.
             let copy = folder.path("mode13h");
             let copied = Command::new("cp").arg(env!("CARGO_BIN_EXE_mode13h")).arg(&copy).status();
             assert!(copied.expect("started").success());
@@ -246,7 +247,7 @@ fn f4_no_right_to_write() {
                 command.uid(65_534).gid(65_534);
             }
             failed(&command.output().expect("started"), 1, &format!("{name}: no permission to write there\n"));
-            // So that it can be removed.
+            // Restored so that the folder can be removed.
             set(&place, 0o755);
             match stands {
                 true => assert_eq!(
@@ -277,8 +278,8 @@ fn f4_a_folder_that_is_not_there() {
     }
 }
 
-/// Killed, without a chance to put things right, while the file is being written: what stood there before is whole.
-/// (The unfinished file is left beside it, under a name that begins with `.mode13h-`.)
+/// Killed without a chance to clean up while a file is being written: the previous file stays whole. (The unfinished
+/// file is left beside it, under a name that begins with `.mode13h-`.)
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_killed_half_way() {
@@ -306,7 +307,7 @@ fn f4_killed_half_way() {
     }
 }
 
-/// A row of pictures that no longer fits ends with an error; every picture under its name is whole.
+/// A series of pictures that no longer fits ends with an error; every picture under its final name is whole.
 #[cfg(target_os = "linux")]
 #[test]
 fn f4_a_row_of_pictures_that_cannot_be_written() {
@@ -327,8 +328,8 @@ fn f4_a_row_of_pictures_that_cannot_be_written() {
 
 // P5
 
-/// Nothing is half-loaded: a palette file that breaks off anywhere either is a palette file still, or an error that
-/// names the file and the place, and no file is written.
+/// Nothing is half-loaded: a palette file truncated anywhere is either still a palette file, or gives an error with the
+/// file and the position, and no file is written.
 #[test]
 fn p5_broken_palettes_change_nothing() {
     let mut tried = Tried::new("p5_broken_palettes_change_nothing", 30);
@@ -355,8 +356,8 @@ fn p5_broken_palettes_change_nothing() {
             (changed(middle, b'!'), true),
         ] {
             let is_text = matches!(format.name, "jasc" | "gimp" | "hex");
-            // A GIMP or Lospec file may have any number of colours, and a number in it may lose its end; in the name
-            // of a colour stands what may.
+            // A GIMP or Lospec file may have any number of colours, and a truncated number in it may still be a number;
+            // the name of a colour may be anything.
             let read = mode13h_assets::palette_file::parse_named(&name, &bytes);
             assert!(read.is_err() || text_only || is_text, "{name}");
             if read.is_ok() {

@@ -1,4 +1,4 @@
-//! The program, run in a folder of its own, and what it leaves there.
+//! Runs the program in a folder of its own, and examines the files that it leaves there.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,7 @@ use tempfile::TempDir;
 pub(crate) use crate::support::workspace::names_in;
 use crate::support::workspace::root;
 
-/// A folder that is removed in the end.
+/// A temporary folder in which the program runs.
 ///
 /// Words for the program are separated by spaces. `''` is an empty one, `data:house.obj` a file of `tests/data`.
 pub(crate) struct Folder(TempDir);
@@ -41,7 +41,7 @@ impl Folder {
         names_in(self.0.path())
     }
 
-    /// The program with these words, without a display and without preferences from the environment.
+    /// The program with these arguments, without a display and without preferences from the environment.
     pub(crate) fn program(&self, words: &str) -> Command {
         let mut command = program();
         command.current_dir(&self.0).args(words.split_whitespace().map(|word| match word.strip_prefix("data:") {
@@ -55,13 +55,13 @@ impl Folder {
         self.program(words).output().expect("started")
     }
 
-    /// What the program prints, if it succeeds without a word on standard error.
+    /// The program's standard output; it must succeed and print nothing to standard error.
     #[track_caller]
     pub(crate) fn printed(&self, words: &str) -> String {
         printed(self.run(words))
     }
 
-    /// What the program says on standard error, if it succeeds.
+    /// The program's standard error; it must succeed.
     #[track_caller]
     pub(crate) fn said(&self, words: &str) -> String {
         let output = self.run(words);
@@ -69,26 +69,26 @@ impl Folder {
         String::from_utf8(output.stderr).expect("text")
     }
 
-    /// Runs what has to succeed in silence.
+    /// Runs a command that must succeed and print nothing.
     #[track_caller]
     pub(crate) fn succeed(&self, words: &str) {
         assert_eq!(self.printed(words), "", "{words}");
     }
 
-    /// The JSON that the program prints. It may warn, and find something.
+    /// The JSON that the program prints. It may give warnings, and exit with status 1.
     #[track_caller]
     pub(crate) fn json(&self, words: &str) -> Value {
         let output = self.run(words);
         serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{words}: {error}: {output:?}"))
     }
 
-    /// Decodes one of its pictures.
+    /// Decodes a picture in the folder.
     #[track_caller]
     pub(crate) fn png(&self, name: &str) -> Png {
         Png::decode(&self.read(name))
     }
 
-    /// The file of the picture that `render` makes in silence.
+    /// The bytes of the picture that `render` writes, without printing anything.
     #[track_caller]
     pub(crate) fn picture(&self, words: &str) -> Vec<u8> {
         self.succeed(&format!("render {words} -o x.png"));
@@ -107,7 +107,7 @@ impl Folder {
             .expect("started")
     }
 
-    /// Runs what has to fail with this status and one line that holds `says`, which is returned.
+    /// Runs a command that must fail with this status and one line that contains `says`. Returns the line.
     #[track_caller]
     pub(crate) fn fails(&self, words: &str, status: i32, says: &str) -> String {
         failed(&self.run(words), status, says)
@@ -133,7 +133,8 @@ pub(crate) fn printed(output: Output) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// That it failed with this status, said one line that holds `says`, and printed nothing. Returns the line.
+/// Checks that the program failed with this status, reported one line that contains `says`, and printed nothing.
+/// Returns the line.
 #[track_caller]
 pub(crate) fn failed(output: &Output, status: i32, says: &str) -> String {
     let line = String::from_utf8(output.stderr.clone()).expect("text");
@@ -144,7 +145,7 @@ pub(crate) fn failed(output: &Output, status: i32, says: &str) -> String {
     line
 }
 
-/// Sends a signal such as `-INT`, and waits for the end.
+/// Sends a signal such as `-INT`, and waits for the program to end.
 #[cfg(unix)]
 pub(crate) fn signalled(child: Child, signal: &str) -> Output {
     let killed = Command::new("kill").args([signal, &child.id().to_string()]).status().expect("started");
@@ -164,9 +165,9 @@ pub(crate) struct Png {
     pub(crate) size: (u32, u32),
     kind: png::ColorType,
     pub(crate) density: Option<(u32, u32)>,
-    /// The bytes as the file has them.
+    /// The bytes as stored in the file.
     pub(crate) pixels: Vec<u8>,
-    /// Empty if it has none.
+    /// The palette; empty if the picture has none.
     pub(crate) palette: Vec<Rgb>,
 }
 

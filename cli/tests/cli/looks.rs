@@ -1,4 +1,4 @@
-//! Looks: what a name sets, and that what is said otherwise comes first.
+//! Looks: the settings that a name stands for, and that explicit settings take precedence.
 
 use std::collections::BTreeSet;
 
@@ -7,12 +7,12 @@ use mode13h_assets::look::{Look, LookColors};
 
 use crate::folder::{Folder, Png};
 
-/// The picture that `render` makes with these words.
+/// The picture that `render` makes with these arguments.
 fn picture(folder: &Folder, words: &str) -> Png {
     Png::decode(&folder.picture(words))
 }
 
-/// The colours that it has.
+/// The colours of a picture.
 fn colors(png: &Png) -> BTreeSet<Rgb> {
     png.colors().into_iter().collect()
 }
@@ -47,12 +47,12 @@ fn the_colours_of_ps1_have_five_bits() {
     assert!(!plain.iter().all(|color| levels.contains(&color.r)));
 }
 
-/// A look is what its options are, and each of them comes first.
+/// A look equals the options that it stands for, and each of these options overrides it.
 #[test]
 fn options_come_before_the_look() {
     let folder = Folder::new();
     let same = |a: &str, b: &str| assert!(picture(&folder, a) == picture(&folder, b), "{a:?} {b:?}");
-    // A palette that is made for what is seen would depend on how that is drawn.
+    // An automatic palette would depend on how the scene is drawn.
     let plain = "crate --palette cube";
     let look = format!("{plain} --look vga");
     same(&look, &format!("{plain} --mapping affine --no-mipmaps --vertex-bits 0"));
@@ -72,7 +72,7 @@ fn options_come_before_the_look() {
 #[test]
 fn a_scene_has_a_look_and_its_own_keys_come_before_it() {
     let folder = Folder::new();
-    // The picture of a scene with these keys, drawn with these words.
+    // The picture of a scene with these keys, drawn with these arguments.
     let scene = |top: &str, render: &str, words: &str| {
         let text = format!(
             "{top}\n[render]\n{render}\n[[objects]]\nshape = 'cube'\nangles = [20, 30, 0]\nmaterial.texture = 'crate'\n\
@@ -88,11 +88,11 @@ fn a_scene_has_a_look_and_its_own_keys_come_before_it() {
     assert!(scene("look = 'ps1'", "dither = false", "") == scene("look = 'ps1'", "", "--no-dither"));
     let exact = scene("look = 'cga'", "vertex-bits = 8\nmapping = 'perspective'", "");
     assert!(exact == scene("look = 'cga'", "", "--vertex-bits 8 --mapping perspective"));
-    // An option's look comes before the scene's.
+    // A look on the command line overrides the scene's.
     assert!(scene("look = 'cga'", "", "--look gameboy") == scene("look = 'gameboy'", "", ""));
 }
 
-/// A body whose colour lies in its ramp alone keeps it where a palette has no ramps.
+/// An object whose colour comes only from its ramp keeps it in a palette without ramps.
 #[test]
 fn the_colour_of_a_ramp_is_kept() {
     let folder = Folder::new();

@@ -1,4 +1,4 @@
-//! The program `mode13h`: its words, its files, its documents.
+//! The program `mode13h`: its command line, its files, its documents.
 
 mod support;
 

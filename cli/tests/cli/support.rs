@@ -1,4 +1,4 @@
-//! What several test files share.
+//! Helpers that several test files share.
 #![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
 
 #[path = "../../../tests/support/film.rs"]

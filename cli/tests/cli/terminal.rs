@@ -1,5 +1,5 @@
-//! Pictures for terminals: what was sent is decoded again, by decoders of the formats' own documents, and compared with the
-//! picture pixel by pixel.
+//! Pictures for terminals: the output is decoded by decoders written from the formats' specifications, and compared
+//! with the picture pixel by pixel.
 
 use std::process::{Output, Stdio};
 
@@ -47,8 +47,8 @@ fn numbers(text: &mut &[u8]) -> Vec<u32> {
     all
 }
 
-/// Decodes one sixel picture, after chapter 14 of the VT330/VT340 Programmer Reference Manual. Whatever the writer has no
-/// reason to send is a failure. Returns what stands behind it, too.
+/// Decodes one sixel picture, after chapter 14 of the VT330/VT340 Programmer Reference Manual. Anything that the writer
+/// has no reason to send is a failure. Also returns the bytes that follow.
 fn decode_sixel(text: &[u8]) -> (Decoded, &[u8]) {
     let mut rest = text.strip_prefix(b"\x1bP").expect("a device control string");
     assert_eq!(numbers(&mut rest), [7, 0, 0], "square pixels on a background");
@@ -99,7 +99,7 @@ fn decode_sixel(text: &[u8]) -> (Decoded, &[u8]) {
     }
 }
 
-/// The bytes that kitty's chunks hold, and the keys of the first. Returns what stands behind them, too.
+/// The payload of kitty's chunks, and the keys of the first. Also returns the bytes that follow.
 fn decode_kitty(mut text: &[u8]) -> (String, Vec<u8>, &[u8]) {
     let (mut first, mut bytes) = (None, Vec::new());
     loop {
@@ -134,7 +134,7 @@ fn decode_base64(text: &str) -> Vec<u8> {
     bits.chunks(4).flat_map(group).collect()
 }
 
-/// That a decoded picture has these pixels, with the colours of their entries to the nearest percent.
+/// Checks that a decoded picture has these pixels, with the colours of their entries to the nearest percent.
 #[track_caller]
 fn assert_shows(decoded: &Decoded, rows: &[Vec<u8>], palette: &[Rgb; 256]) {
     assert_eq!((decoded.width, decoded.height), (rows[0].len(), rows.len()));
@@ -209,7 +209,7 @@ fn the_levels_of_the_dac_stay_different_in_percent() {
     assert_eq!(levels.len(), 64);
 }
 
-/// What `render` shows in a terminal is what it saves.
+/// `render` shows the same picture in a terminal as it saves.
 #[test]
 fn render_shows_the_picture_that_it_saves() {
     let folder = Folder::new();
@@ -232,7 +232,7 @@ fn render_shows_the_picture_that_it_saves() {
     assert_eq!(decode_sixel(&small.stdout).0.width, 320);
 }
 
-/// Frames begin at the screen's corner, and the screen and the cursor are as before when they end.
+/// Frames begin at the screen's corner, and the screen and the cursor are restored at the end.
 #[test]
 fn the_demo_in_a_terminal_ends_as_it_began() {
     let (begin, end) = ("\x1b[?1049h\x1b[?25l\x1b[2J", "\x1b[?25h\x1b[?1049l");

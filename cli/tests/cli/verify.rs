@@ -16,7 +16,7 @@ pub(crate) fn verified_as_json() -> &'static Output {
     OUTPUT.get_or_init(|| Folder::new().run("verify --json --seed 7"))
 }
 
-/// The hash of all machines.
+/// The hash that all machines must give.
 fn hash() -> String {
     let combine = |hash, frame: &frames::Frame| frames::combined_hash(hash, frame.expected().expect("it has one"));
     format!("{:016x}", frames::all().iter().fold(START, combine))
@@ -51,7 +51,7 @@ fn the_same_for_programs() {
     }
 }
 
-/// One frame by its name, as a picture; the names are listed; a name that is nearly right is answered.
+/// Frames can be drawn by name and listed, and a misspelled name gets a suggestion.
 #[test]
 fn one_frame_is_drawn() {
     let folder = Folder::new();

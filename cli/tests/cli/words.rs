@@ -1,4 +1,4 @@
-//! The words of the command line: help, completions, typos, old names, exit statuses, JSON, and what is overwritten.
+//! The command line: help, completions, typos, old names, exit statuses, JSON, and which files are overwritten.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -23,7 +23,8 @@ const COMMANDS: [&str; 12] =
 /// The commands that draw a scene.
 const DRAWING: [&str; 5] = ["demo", "render", "plan", "explain", "cost"];
 
-/// A study that takes two seconds and writes no file. Integers know no budget, so it holds no promise to the clock.
+/// A study that takes two seconds and writes no file. The integer path has no budgets, so no verdict depends on the
+/// clock.
 const COST: &str = "cost cube --frames 1 --seconds 0 --shadings flat --json --arithmetic fixed";
 
 /// Output of [`COST`], from one run for all tests.
@@ -32,13 +33,13 @@ fn cost() -> &'static Output {
     OUTPUT.get_or_init(|| Folder::new().run(COST))
 }
 
-/// The help of a command, or of the program where `command` is empty.
+/// The help of a command, or of the program if `command` is empty.
 fn help(command: &str, option: &str, columns: &str) -> String {
     let folder = Folder::new();
     printed(folder.program(command).arg(option).env("COLUMNS", columns).output().expect("started"))
 }
 
-/// The options that a help text lists, such as `--shading`. What it says of each stands farther to the right.
+/// The options that a help text lists, such as `--shading`. Their descriptions are farther to the right.
 fn options(help: &str) -> BTreeSet<String> {
     let lines = help.lines().filter(|line| line.starts_with("  -") || line.starts_with("      --"));
     let starts = lines.map(str::trim_start);
@@ -58,19 +59,19 @@ fn help_is_short_or_long_and_no_wider_than_the_terminal() {
                 assert!(line.chars().count() <= widest, "{command}: {line}");
             }
             assert!(short.lines().count() < long.lines().count(), "{command}");
-            // Its screen has room for the short one.
+            // The short help fits one screen.
             assert!(short.lines().count() <= 42 || columns != "80", "{command}: {short}");
-            // The short page leaves out what few need.
+            // The short help omits options that few need.
             assert!(options(&short).is_subset(&options(&long)), "{command}");
             tried.add(2);
         }
-        // The names of scenes are in `scenes` alone.
+        // Only `scenes` lists the names of scenes.
         let long = help(command, "--help", "100");
         for scene in ["two-lights", "flash-tessellated", "interlock", "glenz"] {
             assert!(scene.parse::<shipped::Shipped>().is_ok() && !long.contains(scene), "{command}: {long}");
         }
     }
-    // One terminal wider than the other: lines are wrapped, not only short.
+    // In a wider terminal, lines are wrapped differently.
     assert_ne!(help("render", "--help", "80"), help("render", "--help", "100"));
 }
 
@@ -88,7 +89,7 @@ fn the_help_of_the_program_is_that_of_demo_without_the_drawing() {
     assert!(help("", "--help", "100").contains("`mode13h demo --help` explains"));
 }
 
-/// Options that a program for DOS ignores are accepted with a note, but not offered.
+/// Options that a DOS program ignores are accepted with a note, but not offered.
 #[test]
 fn the_help_of_dos_leaves_out_what_it_ignores() {
     let ignored =
@@ -101,8 +102,8 @@ fn the_help_of_dos_leaves_out_what_it_ignores() {
     }
 }
 
-/// A time that every frame fits in chooses the least error, one that none fits in the greatest; the
-/// greatest error is that of the option.
+/// A time in which every frame fits selects the smallest error, one in which none fits the greatest, which
+/// `--max-error` limits.
 #[test]
 fn a_time_chooses_an_error_and_says_so() {
     let folder = Folder::new();
@@ -121,7 +122,7 @@ fn a_time_chooses_an_error_and_says_so() {
         let (bytes, said) = picture(&format!("plain.toml --max-time {time}"));
         assert!(bytes == of_error(error) && said == says, "{time}: {said}");
     }
-    // The greatest error is the greatest that is accepted.
+    // `--max-error` limits the error.
     assert!(picture("plain.toml --max-time 0.0000001 --max-error 3").0 == of_error("3"));
     let json = folder.json("render plain.toml -o x.png --max-time 100000 --stats --json");
     let frame = &json["frames"][0];
@@ -163,7 +164,7 @@ fn whatever_draws_has_the_words_of_a_scene_file() {
     for command in DRAWING {
         let known = options(&help(command, "--help", "100"));
         for key in keys.iter().chain(&["palette", "background", "arithmetic", "kernel", "zoom", "camera"]) {
-            // It compares shadings and budgets, and takes several of the one.
+            // `cost` compares shadings and budgets itself, and accepts a list of shadings.
             let is_compared = command == "cost" && ["shading", "max-error"].contains(key);
             assert_eq!(known.contains(&format!("--{key}")), !is_compared, "{command} --{key}");
         }
@@ -214,7 +215,7 @@ fn an_option_does_what_its_key_does() {
     }
 }
 
-/// Each list has the names that the library has, and marks what is taken where nothing is said.
+/// Each list has the library's names, and marks the default.
 #[test]
 fn lists_have_the_names_that_options_take() {
     let folder = Folder::new();
@@ -262,7 +263,7 @@ fn gouraud_is_short_for_the_default_shading() {
         folder.read("CUBE.EXE")
     };
     assert!(program("gouraud") == program(Shading::default().name()) && program("gouraud") != program("flat"));
-    // It is no name of anything else, nor of what works beside it.
+    // It is not a name of anything else, such as a mapping.
     folder.fails("render cube -o x.png --mapping gouraud", 2, "invalid value 'gouraud'");
     folder.put("wrong.toml", "objects = [{ shape = 'cube' }]\nrender.mapping = 'gouraud'\n");
     folder.fails("render wrong.toml -o x.png", 2, "\"gouraud\": unknown");
@@ -283,19 +284,19 @@ fn a_frame_has_the_size_that_was_asked_for() {
         assert!(png.size == (width, height) && png.pixels == expected, "{width} x {height}");
         assert!(png.density.is_none_or(|(x, y)| x == y), "{width} x {height}: {:?}", png.density);
     }
-    // Enlarged after that; in true colour no larger by itself.
+    // Frames are enlarged afterwards; true colour alone does not enlarge them.
     assert_eq!(picture("torus --size 64x48 --scale 2").size, (128, 96));
     assert_eq!(picture("torus --size 64x48 --rgb").size, (64, 48));
     for animation in ["gif", "apng"] {
         let json = folder.json(&format!("render torus --size 64x48 --frames 2 -o x.{animation} --json"));
         assert_eq!((&json["animation"]["width"], &json["animation"]["height"]), (&64.into(), &48.into()));
     }
-    // A palette that changes is that of the frame's time.
+    // An animated palette has the state of the frame's time.
     let colors = |words: &str| picture(&format!("fade {words}")).palette;
     assert!(colors("--time 1") == colors("--time 1 --size 64x48") && colors("--time 1") != colors("--time 0"));
 }
 
-/// Nothing but the files.
+/// With `--quiet` a command only writes its files.
 #[test]
 fn quiet_commands_say_nothing() {
     let folder = Folder::new();
@@ -313,7 +314,7 @@ fn quiet_commands_say_nothing() {
     for file in ["cube.png", "cube-0001.png", "x.gif", "R5.png", "CUBE.EXE", "cost-cube/report.html"] {
         assert!(folder.path(file).is_file(), "{file}");
     }
-    // Errors are still said.
+    // Errors are still reported.
     folder.fails("render cube -q", 1, "");
 }
 
@@ -346,12 +347,12 @@ fn quiet_commands_print_what_was_asked_for() {
     for command in COMMANDS.into_iter().chain(["", "scenes copy", "generate man"]) {
         assert!(options(&help(command, "-h", "100")).contains("--quiet"), "{command}");
     }
-    // The window, where a display is missing.
+    // The window, without a display.
     folder.said("demo cube -q");
     folder.said("cube -q");
 }
 
-/// A scene's moment by the one option, in the window too: without a display a frame of it is saved.
+/// `--time` sets a scene's moment in the window, too: without a display a frame of that moment is saved.
 #[test]
 fn time_is_the_same_for_all_that_draw() {
     let folder = Folder::new();
@@ -365,7 +366,7 @@ fn time_is_the_same_for_all_that_draw() {
     assert!(folder.printed("explain flash --row 9 --time 0.25").starts_with("flash at 0.25 s, "));
 }
 
-/// The browser that it is opened in is a script here, which writes down what it was given.
+/// The browser is a script here, which records its arguments.
 #[cfg(target_os = "linux")]
 #[test]
 fn a_report_is_opened_in_the_browser() {
@@ -390,7 +391,7 @@ fn a_report_is_opened_in_the_browser() {
         std::thread::sleep(Duration::from_millis(20));
     };
     assert_eq!(said, "study/report.html\n");
-    // Without any the report is there all the same.
+    // Without any browser the report is still written.
     let output = run(std::path::Path::new("/nowhere")).expect("started");
     failed(&output, 1, "study/report.html: cannot be opened in a browser");
 }
@@ -416,16 +417,16 @@ fn typos_are_answered_with_the_nearest_word() {
     ] {
         folder.fails(words, 2, says);
     }
-    // What is near to nothing is compared with nothing.
+    // A word that resembles no name gets no suggestion.
     let line = folder.fails("xyzzyx", 2, "");
     assert!(!line.contains("did you mean"), "{line}");
     assert!(folder.names().is_empty());
-    // A file of that name is an INPUT, whatever is near to it.
+    // A file with that name is an INPUT, whatever it resembles.
     folder.put("rendr", "no model");
     folder.fails("rendr", 2, "rendr: unknown kind of file");
 }
 
-/// Each command's end by each status that it can have.
+/// Each command ends with each exit status that it can have.
 #[test]
 fn every_command_ends_with_the_status_that_help_names() {
     let mut tried = Tried::new("every_command_ends_with_the_status_that_help_names", 40);
@@ -465,7 +466,7 @@ fn every_command_ends_with_the_status_that_help_names() {
         ("explain cube --row 900", 2),
         ("explain none.toml --row 9", 1),
         ("explain cube --row 9 -o none/x.svg", 1),
-        // That a promise which is not kept ends with 1 has a test beside the code.
+        // A unit test covers the status 1 of a broken promise.
         (COST, 0),
         ("cost cube --frames 0", 2),
         ("cost broken.obj", 2),
@@ -489,7 +490,7 @@ fn every_command_ends_with_the_status_that_help_names() {
         ("dos broken.toml", 2),
         ("dos none.obj", 1),
         ("dos cube --frames 2 -o none/x.exe", 1),
-        // That a check which fails ends with 1 has a test beside the code: here none may.
+        // A unit test covers the status 1 of a failed check; here none may fail.
         ("verify", 0),
         ("verify --seed x", 2),
         ("verify --frame canvas -o none/x.png", 1),
@@ -518,7 +519,7 @@ fn every_command_ends_with_the_status_that_help_names() {
     }
 }
 
-/// Lists and figures for programs: each is one JSON document and nothing else.
+/// Output for programs is one JSON document and nothing else.
 #[test]
 fn lists_and_figures_are_json_for_programs() {
     let folder = Folder::new();
@@ -586,7 +587,7 @@ fn lists_and_figures_are_json_for_programs() {
     }
 }
 
-/// Files whose names the user did not give are overwritten by `--force` alone; those behind `-o` always.
+/// Files with default names are overwritten only with `--force`; those named by `-o` always.
 #[test]
 fn only_files_that_were_named_are_overwritten() {
     let mut tried = Tried::new("only_files_that_were_named_are_overwritten", 5);
@@ -607,14 +608,14 @@ fn only_files_that_were_named_are_overwritten() {
         let output = folder.run(words);
         assert!(output.status.success(), "{words}: {output:?}");
         let remove = |file: &&str| fs::remove_file(folder.path(file)).expect("removed");
-        // One that is there already is enough.
+        // A single existing file is enough to refuse.
         files[1..].iter().for_each(remove);
         let file = files[0];
         folder.put(file, "mine");
         folder.fails(words, 1, &format!("{file}: already exists; --force overwrites it"));
         assert_eq!(folder.read(file), b"mine", "{words}");
         for more in ["--force", out] {
-            // Behind -o a study replaces an earlier one, and nothing else.
+            // With -o a study replaces only an earlier study.
             if words != cost || more != out {
                 folder.put(file, "mine");
             }
@@ -625,7 +626,7 @@ fn only_files_that_were_named_are_overwritten() {
         files.iter().for_each(remove);
         tried.add(1);
     }
-    // The names are said where they were not given.
+    // Default names are printed.
     assert_eq!(folder.printed("render cube"), "cube.png\n");
     assert_eq!(folder.printed("render cube --frames 2"), "cube-0000.png\ncube-0001.png\n");
     assert_eq!(folder.printed("render cube -o cube.png"), "");
@@ -644,7 +645,7 @@ fn completions_know_the_commands_and_the_options() {
             assert!(script.contains(word), "{shell}: {word}");
         }
         for value in ["gouraud-vintage", "depth-buffer", "every-16"] {
-            // The generator for PowerShell has no values.
+            // The PowerShell generator does not list values.
             assert!(script.contains(value) || shell == "powershell", "{shell}: {value}");
         }
         assert!(!script.contains("vertex-path") && !script.contains("rung"), "{shell}");
@@ -652,7 +653,7 @@ fn completions_know_the_commands_and_the_options() {
     if !is_here("bash", Command::new("bash").arg("--version").output().is_ok()) {
         return;
     }
-    // What bash offers for the last word.
+    // What bash suggests for the last word.
     let script = folder.printed("generate completions bash");
     folder.put("mode13h.bash", script);
     for (line, offered) in [

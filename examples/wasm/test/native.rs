@@ -1,4 +1,4 @@
-//! The frames that the module must draw at the times in the arguments, as bytes of red, green, blue and alpha.
+//! Prints the frames that the module must draw at the times in the arguments, as bytes of red, green, blue and alpha.
 
 use std::error::Error;
 use std::io::Write;

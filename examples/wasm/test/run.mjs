@@ -5,7 +5,7 @@ import { readFileSync } from "node:fs";
 import { frames } from "../frames.mjs";
 
 const [module, native] = process.argv.slice(2);
-// The first again at the end: a frame does not depend on those before it.
+// The first time comes again at the end: a frame does not depend on those before it.
 const times = [0, 0.5, 1, 1.7, 3.9, 0];
 const bytes = 320 * 200 * 4;
 const expected = execFileSync(native, times.map(String), { maxBuffer: times.length * bytes });

@@ -15,18 +15,18 @@ use mode13h::settings::HiddenSurfaces;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
-/// One frame, drawn again and again.
+/// One kind of frame, drawn again and again.
 pub(crate) struct Case {
-    /// What it grows with.
+    /// The quantity that it grows with.
     pub(crate) x: f64,
-    /// Faces or triangles of a frame.
+    /// Number of faces or triangles in a frame.
     pub(crate) units: f64,
-    /// Frames that are timed together.
+    /// Number of frames timed together.
     pub(crate) repeats: u32,
-    /// Nanoseconds a frame, one of each round.
+    /// Nanoseconds per frame, one figure for each round.
     pub(crate) times: Vec<f64>,
     frame: Box<dyn FnMut() -> u64>,
-    /// Pixels written in the frame before.
+    /// Number of pixels written in the previous frame.
     pub(crate) pixels: u64,
 }
 
@@ -46,7 +46,7 @@ impl Case {
 pub(crate) struct Sphere {
     pub(crate) faces: u64,
     mesh: Shared<Mesh>,
-    /// Bytes of the mesh, while it was built, of an object with it, and of a renderer that has drawn it.
+    /// Bytes of the mesh, the peak while it was built, bytes of an object with it, and of a renderer that has drawn it.
     bytes: [u64; 4],
 }
 
@@ -82,7 +82,7 @@ impl Sphere {
     }
 }
 
-/// From 10³ to `most` faces, two for each power of ten.
+/// Spheres of 10³ to `most` faces, two for each power of ten.
 pub(crate) fn spheres(most: u64) -> Vec<Sphere> {
     // 10^(7/2) faces and the like, but whole powers as they are; a thousandth for the rounding of stacks.
     let steps = (0..=8).map(|half| 10_f64.powf(3.0 + f64::from(half) / 2.0));
@@ -97,14 +97,14 @@ fn showing(mesh: &Shared<Mesh>) -> Scene {
     scene
 }
 
-/// With a depth for every pixel, as most models need, also where a sphere is found to be convex.
+/// A renderer that uses a depth buffer, as most models need, even though a sphere is convex.
 fn renderer() -> Renderer {
     let mut renderer = Renderer::new();
     renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
     renderer
 }
 
-/// Turns the body a little, so that nothing stays from the frame before, and draws it.
+/// Turns the object a little, so that nothing can be reused from the previous frame, and draws it.
 fn draw(renderer: &mut Renderer, scene: &mut Scene, vga: &mut Vga) -> u64 {
     turn(scene);
     renderer.draw(scene, vga).expect("a legal scene").raster.pixels.into()
@@ -115,7 +115,7 @@ fn turn(scene: &mut Scene) {
     scene.objects_mut()[0].angles = [x, y + Angle::from_radians(0.01), z];
 }
 
-/// Spheres that fill the screen, the more faces the smaller.
+/// Spheres that fill the screen; the more faces they have, the smaller these are.
 pub(crate) fn faces(spheres: &[Sphere]) -> Vec<Case> {
     let of = |sphere: &Sphere| {
         let (mut renderer, mut scene, mut vga) = (renderer(), showing(&sphere.mesh), Vga::new());
@@ -136,11 +136,11 @@ pub(crate) fn faces_of_equal_size(spheres: &[Sphere]) -> Vec<Case> {
     let mut cases = Vec::new();
     for sphere in spheres {
         let (mut renderer, mut scene) = (renderer(), showing(&sphere.mesh));
-        // The share of a frame that it covers, found on a small one.
+        // The share of a frame that the sphere covers, measured on a small frame.
         let stats = draw(256, &mut vec![0; 256 * 256], &mut renderer, &mut scene);
         let share = f64::from(stats.raster.pixels) / (256.0 * 256.0);
         let side = (stats.drawn as f64 * PIXELS / share).sqrt().round() as usize;
-        // The raster's frames are no wider.
+        // The rasterizer takes no wider frames.
         if side > 4096 {
             break;
         }
@@ -153,7 +153,7 @@ pub(crate) fn faces_of_equal_size(spheres: &[Sphere]) -> Vec<Case> {
     cases
 }
 
-/// Triangles, all of one size, scattered over the screen: the raster alone.
+/// Triangles, all of one size, scattered over the screen: the rasterizer alone.
 pub(crate) fn pixels() -> Vec<Case> {
     let sizes = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 6.4e4];
     let of = |pixels: f64| {
@@ -185,19 +185,19 @@ pub(crate) fn pixels() -> Vec<Case> {
     sizes.into_iter().map(of).collect()
 }
 
-/// A sun from somewhere in front, the `i`th.
+/// Sun number `i`, from somewhere in front.
 pub(crate) fn sun(i: u32) -> Light {
     let angle = f64::from(i) as f32;
     Light::sun([angle.cos(), angle.sin(), 1.0]).with_intensity(0.1)
 }
 
-/// A lamp beside the body, the `i`th, that reaches all of it.
+/// Lamp number `i`, beside the object and reaching all of it.
 pub(crate) fn lamp(i: u32) -> Light {
     let angle = f64::from(i) as f32;
     Light::lamp([2.0 * angle.cos(), 2.0 * angle.sin(), 2.0], 20.0).with_intensity(0.1)
 }
 
-/// A sphere of 10⁴ faces in more and more light.
+/// A sphere of 10⁴ faces under more and more lights.
 pub(crate) fn lights(light: fn(u32) -> Light) -> Vec<Case> {
     let sphere = Rc::new(Sphere::new(1e4));
     let of = |count: u32| {

@@ -1,13 +1,13 @@
-//! How the time and the memory of a frame grow: with faces, with pixels a triangle, with lights.
+//! How the time and memory of a frame grow: with faces, with pixels per triangle, with lights.
 //!
 //! ```text
 //! cargo bench --bench growth
 //! cargo bench --bench growth -- --most 10000000       # faces; without it 10⁶; 10⁷ need 2 GB of memory
 //! ```
 //!
-//! Every case is timed once in each round, all in one round, and a figure is the median over the rounds; ratios are of
-//! times of one round. The exponent of growth is the slope of the least squares line through the logarithms: 1 is time in
-//! proportion.
+//! Every round times every case once, and a figure is the median over the rounds; ratios compare times of the same
+//! round. The exponent of growth is the slope of the least-squares line through the logarithms: 1 means proportional
+//! time.
 
 mod case;
 #[expect(dead_code, reason = "other benchmarks use the rest")]
@@ -23,12 +23,12 @@ use case::Case;
 use series::Series;
 use thread_time::seconds;
 
-/// What a bound says of ns a face at 10⁶ faces, divided by those at 10⁴.
+/// Greatest ratio allowed of the time per face at 10⁶ faces to that at 10⁴.
 const MAX_GROWTH: f64 = 1.5;
 
 fn main() {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    // Under `cargo test` it only has to run.
+    // Under `cargo test` the benchmark only has to run.
     let is_bench = interleaved::is_bench();
     let most = match words.iter().position(|word| word == "--most") {
         Some(at) => words.get(at + 1).and_then(|word| word.parse().ok()).expect("--most takes a number of faces"),
@@ -54,7 +54,7 @@ fn main() {
     ];
     let mut cases: Vec<&mut Case> = all.iter_mut().flat_map(|series| &mut series.cases).collect();
     for case in &mut cases {
-        // The first frame, in which memory is taken, and one to see how many make 2 ms.
+        // The first frame, which allocates memory, and one to find out how many frames take 2 ms.
         case.draw();
         let time = seconds(|| _ = case.draw());
         case.repeats = if is_bench { (2e-3 / time.max(1e-9)).clamp(1.0, 10_000.0) as u32 } else { 1 };

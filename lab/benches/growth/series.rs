@@ -1,13 +1,13 @@
-//! A row of cases that differ in one thing, and how their time grows with it.
+//! A series of cases that differ in one quantity, and how their time grows with it.
 
 use crate::case::Case;
 use crate::interleaved::median;
 
 pub(crate) struct Series {
     pub(crate) title: &'static str,
-    /// What x is.
+    /// The name of x.
     pub(crate) of: &'static str,
-    /// What times are given for beside a frame.
+    /// The unit that times are given per, besides a frame.
     unit: &'static str,
     pub(crate) cases: Vec<Case>,
 }
@@ -17,7 +17,7 @@ impl Series {
         Self { title, of, unit, cases }
     }
 
-    /// x, and the median nanoseconds: of a frame, or of a triangle where the number of triangles is not what grows.
+    /// x and the median time in nanoseconds: per frame, or per triangle if the number of triangles is not what grows.
     pub(crate) fn points(&self) -> Vec<(f64, f64)> {
         let each = |case: &Case| if self.of == "pixels" { case.units } else { 1.0 };
         self.cases.iter().map(|case| (case.x, median(case.times.clone()) / each(case))).collect()
@@ -39,9 +39,9 @@ impl Series {
         Some(along / square)
     }
 
-    /// By how much the time for a face at `to` faces is greater than at `from`: the median of the rounds' ratios.
+    /// The ratio of the time per face at `to` faces to that at `from`: the median of the rounds' ratios.
     pub(crate) fn growth(&self, from: f64, to: f64) -> Option<f64> {
-        // Spheres have not quite as many faces as they are asked for.
+        // Spheres do not have exactly the number of faces asked for.
         let find = |faces: f64| self.cases.iter().find(|case| (case.x / faces - 1.0).abs() < 0.05);
         let (from, to) = (find(from)?, find(to)?);
         let ratios = from.times.iter().zip(&to.times).map(|(a, b)| (b / to.units) / (a / from.units));
@@ -68,7 +68,7 @@ impl Series {
         }
     }
 
-    /// From where on what does not grow hardly counts.
+    /// The x from which on constant costs hardly count.
     fn large(&self) -> f64 {
         match self.of {
             "faces" => 9_000.0,

@@ -61,8 +61,8 @@ pub fn calibrate(
     tried
 }
 
-/// Frames drawn for several time limits, from the time of the cheapest budget to that of the dearest. Empty for a
-/// vertex path that supports no budget.
+/// Frames drawn for several time limits, from the time of the cheapest budget to that of the most expensive. Empty for
+/// a vertex path that supports no budget.
 pub(super) fn timed_rows(
     frames: &[Scene],
     base: &dyn Fn() -> Renderer,

@@ -120,7 +120,7 @@ fn damage(bytes: &mut Vec<u8>, files: &[(PathBuf, Vec<u8>)], random: &mut Random
 }
 
 /// The most memory that reading a model may hold at once, in bytes per byte of the file. A face whose corners are all `
-/// 1` makes a triangle of every two bytes, and a triangle takes 200 (tests/files.rs, F2).
+/// 1` makes a triangle of every two bytes, and a triangle takes 200 (`cli/tests/cli/files.rs`, F2).
 const BYTES_PER_BYTE: usize = 100;
 
 /// The reader's buffers, messages, and tables that are never empty.

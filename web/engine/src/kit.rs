@@ -8,14 +8,15 @@ use mode13h::vga::Vga;
 /// The longest span.
 const MAX_COUNT: usize = 65_535;
 
-/// The bytes of a span by the portable kernel, which is the loop's specification.
+/// The bytes of a span, drawn by the portable kernel, which is the loop's specification.
 pub(crate) fn span(shade: u16, step: u16, count: usize) -> Vec<u8> {
     let mut row = vec![0; count.min(MAX_COUNT)];
     Kernel::PORTABLE.fill(&mut row, shade, step);
     row
 }
 
-/// A frame of triangles on byte 0, drawn in their order. A triangle with a corner that the raster refuses is left out.
+/// A frame cleared to byte 0, with triangles drawn in the given order. Triangles with a corner that the raster refuses
+/// are left out.
 pub(crate) fn triangles(numbers: &[u8]) -> Vec<u8> {
     let numbers: Vec<f64> = numbers.as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
     let mut bytes = vec![0; Vga::SHOWN];
@@ -32,7 +33,7 @@ pub(crate) fn triangles(numbers: &[u8]) -> Vec<u8> {
 
 /// A corner: x and y in pixels, rounded once, and a shade.
 fn vertex([x, y, shade]: [f64; 3]) -> Option<Vertex> {
-    // Saturates; shades beyond the range are refused.
+    // The cast saturates; shades beyond the range are refused.
     let shade = U8F8::from_bits((shade * 256.0 + 0.5).floor().clamp(0.0, 65_535.0) as u16);
     Vertex::new(I24F8::round_from_f64(x)?, I24F8::round_from_f64(y)?, shade, 0).ok()
 }

@@ -1,13 +1,13 @@
 //! The engine of the page, over linear memory.
 //!
-//! Every export takes numbers. Text and files go into the [`room`], and what an export has to say is its
-//! [`answer`]: text, JSON or bytes. An export that can fail returns whether it did not; its answer is then the reason.
+//! Every export takes numbers. Text and files go into the [`room`], and an export returns text, JSON or bytes as its
+//! [`answer`]. An export that can fail returns whether it succeeded; if not, its answer is the reason.
 //!
 //! | file | what |
 //! |---|---|
 //! | `stage` | an opened scene: moment, settings, frame, truth, film |
 //! | `settings` | settings as lines of text |
-//! | `report` | plan, counts and a pixel's account as JSON |
+//! | `report` | plan, counts and the explanation of a pixel as JSON |
 //! | `kit` | the span loop and triangles, for the figures of the text |
 //! | `turntable` | the program's own file: a scene at a time, seen as the user turned it |
 
@@ -30,7 +30,7 @@ use serde_json::{Value, json};
 use stage::Stage;
 use turntable::Pose;
 
-/// All that an instance keeps.
+/// The state of an instance.
 #[derive(Default)]
 struct State {
     room: Vec<u8>,
@@ -41,7 +41,7 @@ struct State {
 
 thread_local! {
     static STATE: RefCell<State> = RefCell::default();
-    /// What the last call had to say. By itself, so that a trap can leave its reason while a scene is at work.
+    /// The answer of the last call. It is separate, so that a trap can leave its reason while a scene is borrowed.
     static ANSWER: RefCell<Vec<u8>> = RefCell::default();
 }
 
@@ -53,7 +53,7 @@ fn with<Result>(work: impl FnOnce(&mut State) -> Result) -> Result {
     STATE.with_borrow_mut(work)
 }
 
-/// Answers with what `work` makes of a scene, or with the reason why it failed.
+/// Answers with what `work` returns for a scene, or with the reason why it failed.
 fn on(stage: usize, work: impl FnOnce(&mut Stage) -> Result<Vec<u8>, String>) -> bool {
     let result = with(|state| match state.stages.get_mut(stage) {
         Some(Some(stage)) => work(stage),
@@ -96,7 +96,7 @@ extern "C" fn answer_length() -> usize {
     ANSWER.with_borrow(Vec::len)
 }
 
-/// Answers with what does not change: the shipped scenes, the shadings, the levels of an error map.
+/// Answers with constant data: the shipped scenes, the shadings, the levels of an error map.
 #[unsafe(no_mangle)]
 extern "C" fn about() {
     let shipped = shipped::ALL.iter();
@@ -129,8 +129,8 @@ extern "C" fn forget_files() {
     with(|state| state.files.clear());
 }
 
-/// Opens the scene whose TOML is in the room. Returns its number, or −1; the answer is JSON either way: what it is, or
-/// the error with its line and column.
+/// Opens the scene whose TOML is in the room. Returns its number, or −1; the answer is JSON either way: a description
+/// of the scene, or the error with its line and column.
 #[unsafe(no_mangle)]
 extern "C" fn open() -> i32 {
     with(|state| match Stage::open(&state.room, &state.files) {
@@ -192,13 +192,13 @@ extern "C" fn plan(stage: usize) -> bool {
     on(stage, |stage| Ok(as_text(&stage.plan())))
 }
 
-/// Answers with the account of a pixel.
+/// Answers with the explanation of a pixel.
 #[unsafe(no_mangle)]
 extern "C" fn explain(stage: usize, x: u32, y: u32) -> bool {
     on(stage, |stage| stage.explain(x, y).map(|account| as_text(&account)))
 }
 
-/// Answers with the true picture in the frame's form, by the standard of this index.
+/// Answers with the true picture in the format of a frame, by the standard with this index.
 #[unsafe(no_mangle)]
 extern "C" fn exact(stage: usize, standard: usize) -> bool {
     on(stage, |stage| stage.exact(standard))
@@ -210,8 +210,8 @@ extern "C" fn judge(stage: usize) -> bool {
     on(stage, |stage| stage.judge().map(|figures| as_text(&figures)))
 }
 
-/// Answers with the level of each pixel's error, 64,000 bytes: an index of the levels; the next where no error was taken;
-/// the one after it where a face is seen edge on; 255 where there is no face nor should be.
+/// Answers with the level of each pixel's error, 64,000 bytes: an index into the levels; the next index where no error
+/// was measured; the one after it where a face is seen edge-on; 255 where there is no face and should be none.
 #[unsafe(no_mangle)]
 extern "C" fn error_map(stage: usize) -> bool {
     on(stage, |stage| Ok(stage.error_map().to_vec()))
@@ -223,7 +223,7 @@ extern "C" fn png(stage: usize) -> bool {
     on(stage, |stage| stage.png())
 }
 
-/// Adds frame `number` of a film of `frames`, which is one round. The last one's answer is the GIF file.
+/// Adds frame `number` of an animation of `frames`, which is one round. The answer to the last one is the GIF file.
 #[unsafe(no_mangle)]
 extern "C" fn film(stage: usize, number: u32, frames: u32) -> bool {
     on(stage, |stage| stage.film(number, frames))

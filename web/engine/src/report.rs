@@ -1,4 +1,4 @@
-//! Plan, counts and a pixel's account as JSON.
+//! Plan, counts and the explanation of a pixel as JSON.
 
 use mode13h::plan::Row;
 use mode13h::raster::Vertex;
@@ -28,7 +28,7 @@ pub(crate) fn plan(rows: &[Row]) -> Value {
     rows.iter().map(row).collect()
 }
 
-/// A pixel's account of itself: the words of `mode13h explain`, and what stands out of them.
+/// The explanation of a pixel: the text of `mode13h explain`, and the values that the page highlights.
 pub(crate) fn pixel(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> Result<Value, String> {
     let pixel = explain::pixel(renderer, scene, Screen::MODE_13H, x, y).map_err(|error| error.to_string())?;
     let mut account = json!({
@@ -61,7 +61,7 @@ fn corner(vertex: &Vertex) -> Value {
     ])
 }
 
-/// What the loop of 1994 holds at the pixel, where a loop keeps a sum.
+/// The registers of the loop of 1994 at the pixel, for shadings whose loop keeps a sum.
 fn registers(pixel: &Pixel, face: &FaceHere, seen: &Seen) -> Option<Registers> {
     if seen.shaded_by != ShadedBy::Corners {
         return None;

@@ -1,12 +1,12 @@
 //! Settings as lines of text: `shading NAME`, `max-error SHADES`, `effect NAME on|off`.
 //!
-//! What no line names is left to the scene and the plan.
+//! Anything that no line names is left to the scene and the plan.
 
 use mode13h::plan::Effect;
 use mode13h::render::Renderer;
 use mode13h::settings::Accuracy;
 
-/// Sets a renderer by the lines, and takes back what was set before.
+/// Applies the lines to a renderer, and resets what was set before.
 pub(crate) fn apply(renderer: &mut Renderer, lines: &str) -> Result<(), String> {
     let mut accuracy = None;
     let mut effects = Vec::new();

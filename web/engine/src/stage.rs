@@ -21,30 +21,31 @@ use serde_json::{Value, json};
 use crate::turntable::{Colors, Pose, Turntable};
 use crate::{report, settings};
 
-/// The name that errors would give the scene's file.
+/// The path of the scene file, for errors.
 const PATH: &str = "scene.toml";
 
-/// Level of a pixel that shows no face, nor should.
+/// Level of a pixel that shows no face and should show none.
 const BACKGROUND: u8 = 255;
-/// Level where no error was taken, as truth and frame show different faces. Behind the levels of errors.
+/// Level of a pixel where no error was measured, because truth and frame show different faces. It follows the levels of
+/// errors.
 const NOT_COMPARED: u8 = error_levels::ALL.len() as u8;
-/// Level of a pixel that is beyond the budget by no more than the rounding of corners explains.
+/// Level of a pixel that exceeds the budget by no more than the rounding of corners explains.
 const EDGE_ON: u8 = NOT_COMPARED + 1;
 
-/// What a byte is off by where light is computed at the pixel: a half, and what the rounding of shades adds. No budget is
-/// kept more closely.
+/// How far a byte may be off where light is computed at the pixel: half a shade plus the rounding of shades. No budget
+/// can be kept more closely than that.
 const LIT: f64 = 0.52;
 
 pub(crate) struct Stage {
     turntable: Turntable,
     renderer: Renderer,
-    /// Settings as they were given, for the probe.
+    /// The settings as given, for the probe.
     lines: String,
     vga: Box<Vga>,
     stats: Option<Stats>,
     warnings: Vec<String>,
     moment: (f64, Pose),
-    /// Truth at the moment by light at every pixel, once it was asked for.
+    /// The truth at this moment, with light at every pixel; computed on demand.
     truth: Option<TruthFrame>,
     probe: Probe,
     error_map: Vec<u8>,
@@ -52,7 +53,7 @@ pub(crate) struct Stage {
 }
 
 impl Stage {
-    /// Opens the scene of a text. An error is JSON: its words, its line and its column.
+    /// Opens the scene in a text. An error is JSON: its message, line and column.
     pub(crate) fn open(text: &[u8], files: &BTreeMap<String, Arc<[u8]>>) -> Result<Stage, Value> {
         let loaded = Scene::from_toml_bytes(text, PATH, |path| find(files, path)).map_err(|error| located(&error))?;
         let colors = match loaded.scene.auto_palette {
@@ -60,7 +61,7 @@ impl Stage {
             false => loaded.scene.palette.clone().map(Colors::from),
         };
         let mut turntable = Turntable::of_scene(loaded.scene);
-        // Its colours, too, are those of the look.
+        // The look's colours apply, too.
         if let Some(look) = loaded.look {
             turntable.set_look(look);
         }
@@ -82,7 +83,7 @@ impl Stage {
         })
     }
 
-    /// The scene in a few words.
+    /// A short description of the scene.
     pub(crate) fn about(&self) -> Value {
         let scene = &self.turntable.scene;
         let faces: usize = scene.objects().iter().map(|object| object.mesh().triangles().len()).sum();
@@ -112,7 +113,7 @@ impl Stage {
 
     pub(crate) fn draw(&mut self, again: bool) -> Result<(), String> {
         if again {
-            // Whoever touches the machine's memory gets another frame.
+            // Touching the video memory makes the renderer draw again.
             black_box(self.vga.pixels_mut());
         }
         let stats = self.renderer.draw(&self.turntable.scene, &mut self.vga).map_err(|error| error.to_string())?;
@@ -136,7 +137,7 @@ impl Stage {
         report::pixel(&mut self.renderer, &self.turntable.scene, x, y)
     }
 
-    /// Truth at the moment.
+    /// The truth at this moment.
     fn truth(&mut self) -> Result<&TruthFrame, String> {
         if self.truth.is_none() {
             self.truth = Some(self.truth_by(Standard::Lit)?);
@@ -169,8 +170,8 @@ impl Stage {
         Ok(with_palette(truth.pixels.iter().map(entry).collect(), &shown))
     }
 
-    /// Compares the frame of the moment with the truth. Within a budget, pixels that are beyond it by no more than the
-    /// rounding of corners explains are counted apart: their faces are seen edge on.
+    /// Compares the frame of the moment with the truth. With a budget, pixels that exceed it by no more than the
+    /// rounding of corners explains are counted separately: their faces are seen edge-on.
     pub(crate) fn judge(&mut self) -> Result<Value, String> {
         settings::apply(self.probe.renderer(), &self.lines)?;
         let screen = Screen::MODE_13H;
@@ -181,7 +182,7 @@ impl Stage {
         let frame = self.truth.as_ref().ok_or("no truth")?;
         let errors = ErrorMap::new(frame, &shown).ok_or("truth and frame differ in size")?;
         let figures = errors.figures();
-        // Where a corner may be takes long to say, and matters only where something is beyond.
+        // How far a corner may have moved takes long to compute, and matters only if a pixel exceeds the budget.
         let truth = (figures.max > allowed).then(|| Truth::new(&self.turntable.scene, screen)).transpose();
         let truth = truth.map_err(|error| error.to_string())?;
         let (mut max, mut edge_on, mut beyond) = (0.0_f64, (0_u32, 0.0_f64), 0_u32);
@@ -222,7 +223,7 @@ impl Stage {
         Png::default().encode(&Picture::mode_13h(self.vga.pixels(), &palette)).map_err(|error| error.to_string())
     }
 
-    /// Adds a frame of one round to the film.
+    /// Adds a frame of one round to the animation.
     pub(crate) fn film(&mut self, number: u32, frames: u32) -> Result<Vec<u8>, String> {
         let new = || GifWriter::new(Vec::new(), Scale::To { width: 640, height: 480 }, FrameRate::default());
         if number == 0 {
@@ -257,13 +258,13 @@ fn entry(scene: &Scene, palette: &Palette, pixel: &TruePixel) -> u8 {
     }
 }
 
-/// A picture's bytes and, behind them, those of its palette.
+/// A picture's bytes followed by those of its palette.
 fn with_palette(mut bytes: Vec<u8>, palette: &Palette) -> Vec<u8> {
     bytes.extend(palette.colors().iter().flat_map(|color| [color.r, color.g, color.b]));
     bytes
 }
 
-/// A file of this path or, as a page knows no folders, of this name.
+/// The file with this path or, as a page has no folders, with this name.
 fn find(files: &BTreeMap<String, Arc<[u8]>>, path: &Path) -> io::Result<Box<dyn BufRead>> {
     let path = path.to_string_lossy();
     let name = path.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -278,7 +279,7 @@ fn find(files: &BTreeMap<String, Arc<[u8]>>, path: &Path) -> io::Result<Box<dyn 
     Ok(Box::new(Cursor::new(Arc::clone(contents))))
 }
 
-/// An error of a scene, without the name of a file that the page has none of.
+/// An error of a scene, without a file name, since the page has no file.
 fn located(error: &SceneError) -> Value {
     let words = error.to_string();
     let place = error.place.as_ref().map(|place| (place.line, place.column));

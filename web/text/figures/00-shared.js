@@ -1,8 +1,8 @@
-// What all figures share: registration, boards, handles, sliders, and the machine's arithmetic.
+// Shared by all figures: registration, boards, handles, sliders, and the machine's arithmetic.
 //
 // figure(name, mount, usesEngine)   registers a figure; mount(stage, engine) builds it
 // mountFigures(engine)              mounts every [data-figure] as it comes near the screen. Called
-//                                   again with an engine, it mounts again what uses one.
+//                                   again with an engine, it remounts the figures that use one.
 
 export const registered = new Map();
 const mounted = new Map();
@@ -69,8 +69,8 @@ function watchTheme() {
 const INK = ["paper", "ink", "muted", "line", "accent", "second", "warn", "panel", "mono", "sans"];
 
 /**
- * A canvas as wide as its place. `paint(context, width, height, ink)` draws in CSS pixels;
- * `height(width)` says how high it is.
+ * A canvas as wide as its container. `paint(context, width, height, ink)` draws in CSS pixels;
+ * `height(width)` returns its height.
  * @param {HTMLElement} parent
  * @param {{ height: (width: number) => number, paint: Function, label?: string, className?: string }} options
  */
@@ -121,8 +121,8 @@ export function board(parent, { height, paint, label, className = "" }) {
 }
 
 // A point on a board, dragged by pointer or moved by arrow keys (Shift: farther).
-// at() → [x, y] in the board's CSS pixels; move(x, y) takes such; nudge(dx, dy) takes key steps;
-// say() → what the point's place means. With `anywhere` a mouse may press the board beside it.
+// at() → [x, y] in the board's CSS pixels; move(x, y) takes the same; nudge(dx, dy) takes key steps;
+// say() → the meaning of the point's position. With `anywhere` the mouse may press the board beside it.
 export function handle(on, { label, at, move, nudge, say, kind = "", anywhere = false }) {
   const button = make("button", `fig-handle ${kind}${anywhere ? " anywhere" : ""}`, on.wrap);
   button.type = "button";
@@ -169,7 +169,7 @@ export function handle(on, { label, at, move, nudge, say, kind = "", anywhere = 
   return button;
 }
 
-// A place for sliders, choices and buttons.
+// A container for sliders, choices and buttons.
 export const controls = (parent) => make("div", "fig-controls", parent);
 
 /**
@@ -180,7 +180,7 @@ export function slider(parent, { label, min, max, step = 1, value, format = Stri
   const wrap = make("label", "fig-slider", parent);
   const head = make("span", "fig-slider-head", wrap);
   make("span", "", head, label);
-  // Told by aria-valuetext: an output would tell it a second time.
+  // Screen readers get this from aria-valuetext; an output would announce it a second time.
   const out = make("span", "fig-slider-value", head);
   out.setAttribute("aria-hidden", "true");
   const range = make("input", "", wrap);
@@ -225,7 +225,7 @@ export function button(parent, text, press) {
   return b;
 }
 
-// One line that says what the figure shows now.
+// A line that says what the figure is showing.
 export function readout(parent) {
   const p = make("p", "fig-say", parent);
   p.setAttribute("aria-live", "polite");
@@ -276,7 +276,7 @@ export function pixels(context, bytes, w, h, x, y, toWidth, toHeight, color) {
   context.drawImage(canvas, 0, 0, w, h, x, y, toWidth, toHeight);
 }
 
-// A board with a frame of the engine, which get() gives, under a title.
+// A board with a frame of the engine, returned by get(), under a title.
 export function frame(parent, title, get, color) {
   const side = make("div", "", parent);
   make("p", "fig-name", side, title);
@@ -393,7 +393,7 @@ export function coverExact(corners, width, height, into = new Uint8Array(width *
   return into;
 }
 
-// 8 bits through the DAC's 6 and back.
+// Converts 8 bits to the DAC's 6 and back.
 export const toDac6 = (eight) => eight >> 2;
 export const dac6To8 = (six) => (six << 2) | (six >> 4);
 

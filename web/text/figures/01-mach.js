@@ -1,7 +1,7 @@
-// A ramp with two bends, and the lines that an eye sees there.
+// A ramp with two bends, and the lines that the eye sees there.
 import * as M from "./00-shared.js";
 
-// Mean over 2·radius + 1 places; the ends go on as they are.
+// Mean over 2·radius + 1 positions; beyond the ends the last value continues.
 function blur(values, radius) {
   const n = values.length;
   const at = (i) => values[M.clamp(i, 0, n - 1)];
@@ -32,7 +32,7 @@ export function machProfile([x1, y1], [x2, y2], n, soft = false) {
   return blur(blur(sharp, radius), radius);
 }
 
-// What a simple eye makes of it: each point, and how it differs from its surroundings.
+// A simple model of the eye: each point, and how it differs from its surroundings.
 export function machSeen(profile) {
   const radius = Math.round(profile.length * .045);
   const around = blur(blur(profile, radius), radius);
@@ -89,7 +89,7 @@ M.figure("mach", (stage, engine) => {
   if (engine) cone(stage, engine);
 }, true);
 
-// The engine's cone, where the bends are real, beside one of many slices.
+// The engine's cone, where the bends are real, beside a cone of many slices.
 function cone(stage, engine) {
   const few = engine.shipped.find((s) => s.name === "cone").toml;
   const many = few.replace("subdivisions = [9, 1]", "subdivisions = [90, 1]");

@@ -1,10 +1,10 @@
-// A lamp before a wall: light at corners beside light at each pixel.
+// A lamp in front of a wall: light at corners beside light at each pixel.
 import * as M from "./00-shared.js";
 
 const [WIDTH, HEIGHT] = [144, 90];
 
 // A spot light that shines straight at the wall: full light up to 25 degrees from its axis, none from 40 degrees on, and
-// between the two the engine's soft edge. Given the cosine of the angle.
+// between the two the engine's soft edge. Takes the cosine of the angle.
 const [INNER, OUTER] = [25, 40].map((degrees) => Math.cos(degrees * Math.PI / 180));
 function cone(cosine) {
   const x = M.clamp(1 - (INNER - cosine) / (INNER - OUTER), 0, 1);
@@ -21,7 +21,7 @@ export function wallLight(x, y, lx, ly, isSpot = false, near = isSpot ? 52 : 26)
   const fall = d < range ? (1 - d2 / (range * range)) ** 2 * (isSpot ? cone(near / d) : 1) : 0;
   const [vx, vy, vz] = [WIDTH / 2 - x, HEIGHT / 2 - y, 220];
   const v = Math.hypot(vx, vy, vz);
-  // The reflected ray: the light's direction with the part along the wall turned round.
+  // The reflected ray: the light's direction with the part along the wall reversed.
   const along = (-dx * vx - dy * vy + near * vz) / (d * v);
   return Math.min(1, .07 + fall * (.55 * near / d + .4 * Math.max(0, along) ** 12));
 }

@@ -24,8 +24,8 @@ function rangeOfCos(a, b) {
 }
 
 // By how much, in shades, light can differ from straight shades between the angles a and b, at
-// most. It asks no light between them: an eighth of the width's square times the greatest second
-// derivative, and what the clamp at the edge of the light adds (Lemmas 2 and 3 of docs/budget.md).
+// most. It evaluates no light between them: an eighth of the squared width times the greatest second
+// derivative, plus the clamp at the edge of the light (Lemmas 2 and 3 of docs/budget.md).
 // Half a shade is for the byte. For |sun| < 90 degrees, where the highlight ends before the light.
 export function linearBound(a, b, sun) {
   const w = (b - a) * (b - a) / 8;
@@ -42,7 +42,7 @@ export function linearBound(a, b, sun) {
   return BODY * body + SHINE * shine + .5;
 }
 
-// The cut in `faces` faces and `pixels` pixels within E shades: what each face got, the bytes,
+// The cut in `faces` faces and `pixels` pixels within E shades: each face's method, the bytes,
 // and how far each pixel is from exact light.
 export function budgetRow(faces, pixels, sun, E) {
   const angle = (x) => (x / pixels - .5) * HALF_TURN;
@@ -143,7 +143,7 @@ M.figure("budget", (stage, engine) => {
   show();
 }, true);
 
-// The engine's own picture within E shades, what it is off, and what it takes.
+// The engine's own picture within E shades, its error, and its time.
 function reality(stage, engine) {
   const scene = engine.open((engine.shipped.find((s) => s.name === "phong") ?? engine.shipped[0]).toml);
   const frame = 45;
@@ -159,7 +159,7 @@ function reality(stage, engine) {
   let worst = 0;
   const tell = (...more) => say("Worst pixel of the picture: ", { b: M.count(worst, "shade") },
     " from double precision, both rounded. ", ...more);
-  // Both in turn, so that what else runs on the machine hits both.
+  // Both in turn, so that other load on the machine affects both.
   M.button(M.controls(stage), "Measure the time here", () => {
     const watches = [{ maxError: E }, { shading: "phong" }].map((way) => ({ way, watch: new Stopwatch() }));
     for (let round = 0; round < 6; round++) {

@@ -96,7 +96,7 @@ M.figure("depth", (stage) => {
         const color = `#${COLORS[i + 1].toString(16)}`;
         const z = (px) => depthAt(t, px + .5, row + .5);
         M.line(c, [[x(span[0]), y(z(span[0]))], [x(span[1]), y(z(span[1]))]], color, 2, [4, 4]);
-        // Thick where it is in front.
+        // Thick where the triangle is in front.
         const other = spans[1 - i];
         for (let px = span[0]; px < span[1]; px++) {
           const there = other.span && px >= other.span[0] && px < other.span[1];

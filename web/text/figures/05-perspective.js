@@ -1,5 +1,5 @@
 // A textured wall, seen along it: affine, exact at every 16th pixel, exact everywhere. On a level floor all pixels of a row
-// are equally far, and one division a row would do.
+// are equally far away, and one division per row would do.
 import * as M from "./00-shared.js";
 
 const [WIDTH, HEIGHT] = [320, 128];

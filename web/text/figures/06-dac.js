@@ -87,7 +87,7 @@ M.figure("dac", (stage) => {
         M.text(c, String(l), left - 6, y(l) + 4, ink.muted, { align: "right" });
       }
       const [r, g, b] = copper(entry);
-      // 3 : 1 and more on light and on dark.
+      // A contrast of 3 : 1 and more on light and on dark.
       for (const [v, color] of [[r, "#d83a3a"], [g, "#2f9440"], [b, "#4f7fe8"]]) {
         const steps = [];
         for (let s = 0; s <= 256; s++) steps.push([x(s), y(faded(v, s))], [x(Math.min(s + 1, 256)), y(faded(v, s))]);

@@ -5,7 +5,7 @@ const CODE = ["mov [edi], ah", "inc edi", "add ax, bx", "dec cx", "jnz top"];
 const PIXELS = 16;
 const VIDEO = 0xA0000;
 
-// The registers after `done` instructions: a pure function, so that one can go back, too.
+// The registers after `done` instructions: a pure function, so that the reader can step back, too.
 export function loopState(ax, bx, pixels, done) {
   const row = new Array(pixels).fill(null);
   const state = { ax, bx, cx: pixels, edi: VIDEO, row, at: 0, carry: false, changed: "", over: pixels === 0 };

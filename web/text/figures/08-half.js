@@ -1,4 +1,4 @@
-// What is added before the cut, and the error that is left.
+// What is added before truncation, and the error that remains.
 import * as M from "./00-shared.js";
 
 // Bytes of a row and their errors in shades: `added` is in 1/256 shade.
@@ -33,7 +33,7 @@ M.figure("half", (stage) => {
         c.fillRect(x, Math.min(y(exact), y(bytes[k])), cell, Math.abs(y(exact) - y(bytes[k])));
         c.globalAlpha = 1;
         M.line(c, [[x, y(bytes[k])], [x + cell, y(bytes[k])]], ink.ink, 2.5);
-        // Nine shades over the whole range of greys, to be seen.
+        // Nine shades spread over the whole range of greys, to be visible.
         c.fillStyle = M.grey(M.clamp(Math.round((bytes[k] - 19) * 25), 0, 255));
         c.fillRect(x, bottom + 4, cell + .5, 14);
       }

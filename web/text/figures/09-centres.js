@@ -2,7 +2,7 @@
 import * as M from "./00-shared.js";
 
 // Adds 1 to every pixel of the rows that the period's code draws: corners on whole pixels, slopes
-// in 16.16 cut toward zero, and one addition a row (gouraud-vintage).
+// in 16.16 truncated toward zero, and one addition per row (gouraud-vintage).
 export function coverVintage(corners, width, height, into = new Uint8Array(width * height)) {
   const nearestPixel = (u) => (u + 128) >> 8;
   const { v, area } = M.sorted(corners);

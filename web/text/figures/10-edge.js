@@ -4,7 +4,7 @@ import { grid, gridHandle, whereIsCentre } from "./09-centres.js";
 
 // Adds 1 to every pixel that `rule` gives to a triangle: "top-left"; "both", where a centre on an
 // edge counts as inside; "neither", where it does not; "slope", where each edge is walked in the
-// triangle's own direction by a slope cut to 1/16 pixel a row.
+// triangle's own direction by a slope truncated to 1/16 pixel per row.
 export function coverByRule(rule, corners, width, height, into = new Uint8Array(width * height)) {
   if (rule === "top-left") return M.coverExact(corners, width, height, into);
   if (rule === "slope") return coverSloped(corners, width, height, into);

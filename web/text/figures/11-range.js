@@ -1,4 +1,4 @@
-// A row's sums with the step rounded three ways, and what wraps.
+// A row's sums with the step rounded in three ways, and which of them wrap.
 import * as M from "./00-shared.js";
 
 // Sums of a row from shade a to shade b, both in 1/256 and met at the centres of the first and
@@ -53,7 +53,7 @@ M.figure("range", (stage) => {
           c.fillRect(i * cell, 78, cell + .5, 4);
         }
       }
-      // Drift against what room there is before the 16 bits wrap.
+      // Drift compared with the room left before the 16 bits wrap.
       const [top, bottom, left] = [96, h - 22, 40];
       const y = (units) => (top + bottom) / 2 - units / 400 * (bottom - top) / 2;
       const x = (k) => left + k / Math.max(w - 1, 1) * (width - left - 2);

@@ -3,7 +3,7 @@ import * as M from "./00-shared.js";
 
 // Sums, in shades, of a row from a to b (1/256 shade) over w pixels: step toward zero, each start
 // rounded back toward where shades come from, a start every `reseed` pixels, `bits` of fraction.
-// bytes: the sum plus a half, cut.
+// bytes: the sum plus a half, truncated.
 export function rowDrift(a, b, w, bits, reseed = w) {
   const unit = 2 ** (bits - 8);
   const [from, delta, n] = [a * unit, (b - a) * unit, Math.max(w - 1, 1)];
@@ -16,7 +16,7 @@ export function rowDrift(a, b, w, bits, reseed = w) {
     for (let k = seed; k < Math.min(seed + reseed, w); k++) {
       const sum = start + (k - seed) * step;
       sums[k] = sum / 2 ** bits;
-      // Exact less sum over the common denominator, so that no subtraction cancels.
+      // Exact minus sum over the common denominator, so that no subtraction cancels.
       lag[k] = Math.abs((from - sum) * n + delta * k) / n / 2 ** bits;
       bytes[k] = Math.floor(sum / 2 ** bits + .5);
     }

@@ -1,4 +1,4 @@
-// All figures: imported, each registers itself.
+// All figures: each registers itself when imported.
 import "./01-mach.js";
 import "./02-highlights.js";
 import "./03-budget.js";

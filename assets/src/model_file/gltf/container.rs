@@ -76,9 +76,10 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     Ok((Document::from_json_without_validation(root), binary))
 }
 
-/// The part of a file that `gltf` finds at fault first, and its fault.
+/// The first part of a file that `gltf` finds faulty, and its fault.
 ///
-/// For `gltf` an accessor needs a buffer view or sparse values; by the specification it is zeros without.
+/// `gltf` wants every accessor to have a buffer view or sparse values; by the specification an accessor without them is
+/// all zeros.
 fn first_fault(root: &json::Root) -> Option<(String, validation::Error)> {
     let mut first = None;
     root.validate(root, json::Path::new, &mut |path, error| {

@@ -105,7 +105,7 @@ fn range(range: Option<f32>) -> Option<f64> {
 pub(super) fn camera(document: &Document, scene: &[Node<'_>], left_out: &mut LeftOut) -> Option<Eye> {
     for node in scene {
         let Some(camera) = node.camera() else { continue };
-        // `gltf` looks for the numbers of the other kind if the file says one and has the other.
+        // If the file states one kind of camera and has the numbers of the other, `gltf` looks for the wrong ones.
         let perspective = document.as_json().cameras.get(camera.index()).and_then(|camera| camera.perspective.as_ref());
         let Some(perspective) = perspective else {
             left_out.insert("orthographic cameras");

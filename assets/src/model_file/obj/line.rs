@@ -43,7 +43,7 @@ impl<R: BufRead> Lines<R> {
                 self.buffer.drain(..3);
             }
             first_word += self.buffer[first_word..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-            // A path at the end of a comment joins nothing.
+            // A comment that ends in a path with a backslash joins nothing.
             if !self.buffer.ends_with(b"\\") || self.buffer[first_word] == b'#' {
                 return Ok(Some((self.number, &self.buffer)));
             }

@@ -5,9 +5,9 @@
 //! from the middle of the model; or, for a lamp beside or inside it, as much as reaches all of it. A range in the file limits
 //! it. The intensity at the lamp is then 27/4 · I/R².
 //!
-//! **Exposure.** Files give lux and candela, or what their program takes for that. So all lights are exposed together,
-//! as by a camera's automatic exposure: a white surface in the middle of the model that faced each of them fully would
-//! get full light.
+//! **Exposure.** Files give lux and candela, or whatever their program takes these to be. So all lights are exposed
+//! together, as by a camera's automatic exposure: a white surface in the middle of the model that faced each of them
+//! fully would get full light.
 
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -34,7 +34,7 @@ pub(crate) struct Source {
 pub(crate) enum Kind {
     Sun,
     Lamp {
-        /// The distance beyond which it need not be seen.
+        /// The distance beyond which it has no effect.
         range: Option<f64>,
         /// The half-angles of a spot light, in radians.
         cone: Option<[f64; 2]>,
@@ -80,7 +80,7 @@ pub(super) fn lights(
     bounds: &Bounds,
 ) -> Vec<(usize, Light)> {
     let middle = widen(bounds.centre);
-    // Each with its light in the middle, and its intensity in the file's units.
+    // Each with its light in the middle of the model, and its intensity in the file's units.
     let mut lights: Vec<(usize, Light, f64, f64)> = Vec::new();
     for (index, source) in sources.iter().enumerate() {
         let Some(stand) = stand(source.node) else { continue };
@@ -120,7 +120,7 @@ pub(super) fn lights(
     exposed.filter(|(_, light)| is_sound(light)).collect()
 }
 
-/// Returns whether the renderer accepts a light.
+/// Returns whether the renderer accepts the light.
 fn is_sound(light: &Light) -> bool {
     let ranges = match *light {
         Light::Lamp { range, .. } => range > 0.0 && range.is_finite(),

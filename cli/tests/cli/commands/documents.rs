@@ -1,4 +1,4 @@
-//! What the documents name is what the program has: options, their values, keys of scenes and of the window, names of
+//! Everything that the documents name exists: options, their values, keys of scenes and of the window, names of
 //! shadings and effects, files.
 
 use std::collections::BTreeSet;
@@ -24,7 +24,7 @@ const DOCUMENTS: [(&str, &str); 6] = [
     ("CHANGELOG.md", include_str!("../../../../CHANGELOG.md")),
 ];
 
-/// The documents for those who change the engine: their files are checked, their words are not.
+/// The documents for contributors: only the files that they name are checked, not other names.
 const MORE_DOCUMENTS: [(&str, &str); 13] = [
     ("ARCHITECTURE.md", include_str!("../../../../ARCHITECTURE.md")),
     ("CONTRIBUTING.md", include_str!("../../../../CONTRIBUTING.md")),
@@ -41,13 +41,13 @@ const MORE_DOCUMENTS: [(&str, &str); 13] = [
     ("cli/README.md", include_str!("../../../README.md")),
 ];
 
-/// It has the table of shadings and the keys of the window.
+/// Contains the table of shadings and the keys of the window.
 const PROGRAM: &str = include_str!("../../../../docs/program.md");
-/// It has a command for everything that the source texts describe.
+/// Contains a command for everything that the source texts describe.
 const SOURCES: &str = include_str!("../../../../docs/sources.md");
 const SCENES: &str = include_str!("../../../../assets/scenes/README.md");
 
-/// Options of other programs than this one: of cargo, of the scripts in `.ci`, of the bench against peers.
+/// Options of other programs: cargo, the scripts in `.ci`, the benchmark against peers.
 const OTHERS: [&str; 11] = [
     "--bench",
     "--ignored",
@@ -74,7 +74,7 @@ fn options(text: &str) -> BTreeSet<&str> {
         let end = rest.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(rest.len());
         rest[..end].starts_with(|c: char| c.is_ascii_lowercase()).then_some(&text[at..at + 2 + end])
     };
-    // Not within a word, nor within a rule of a table.
+    // Not inside a word or a table's rule.
     starts.filter(|at| !text[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '-')).filter_map(word).collect()
 }
 
@@ -103,7 +103,7 @@ fn all_that_the_source_texts_describe_is_seen_by_a_command() {
     let table = SOURCES.split("| see it by").nth(1).expect("a table");
     for row in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
         let command = row.split('`').nth(1).expect("a command");
-        // Tests of its own run this one, which takes long.
+        // This one takes long, and has tests of its own.
         if command != "verify" {
             let output = Folder::new().run(command);
             assert!(output.status.success(), "{row}: {output:?}");
@@ -124,7 +124,7 @@ fn documents_name_options_that_the_program_has() {
             assert!(known, "{document}: {option} is no option of the program");
             tried.add(1);
         }
-        // A line to be typed: the options of its own command.
+        // In a command line, options must be those of its own command.
         for line in text.lines() {
             let Some((_, words)) = line.split_once("run --release -- ").or_else(|| line.split_once("mode13h ")) else {
                 continue;
@@ -142,7 +142,7 @@ fn documents_name_options_that_the_program_has() {
     }
 }
 
-/// Of `--shading phong` the second word.
+/// In `--shading phong`, for example, the second word must be a shading.
 #[test]
 fn documents_give_options_values_that_they_take() {
     let mut tried = Tried::new("documents_give_options_values_that_they_take", 15);
@@ -197,8 +197,8 @@ fn documents_list_every_shading_and_every_way() {
     tried.add(6);
 }
 
-/// Names of several words, such as `depth-buffer` or `max-error`: of shadings, effects, ways, mappings, kernels, palettes,
-/// scenes, features, or keys of a scene.
+/// Hyphenated names, such as `depth-buffer` or `max-error`, must be those of shadings, effects, hidden-surface methods,
+/// mappings, kernels, palettes, scenes, features, or keys of a scene.
 #[test]
 fn documents_name_what_there_is() {
     let mut tried = Tried::new("documents_name_what_there_is", 30);
@@ -211,12 +211,12 @@ fn documents_name_what_there_is() {
     known.extend(mode13h::palette::builtin::ALL.iter().map(|palette| palette.name));
     known.extend(shipped::ALL.iter().map(|scene| scene.name));
     known.extend(["mode13h-assets", "mode13h-capi", "mode13h-conformance", "mode13h-lab", "mode13h-cli"]);
-    // The error lists those that this machine lacks, too.
+    // Including those that this machine lacks.
     known.extend(["asm-unrolled", "simd-arrays", "simd-sse2", "simd-neon", "simd-wasm", "simd-avx2", "simd-avx512"]);
     assert!(Kernel::available().all(|kernel| known.contains(kernel.name()) || !kernel.name().contains('-')));
     let features = include_str!("../../../../Cargo.toml").split("[features]").nth(1).expect("features");
     known.extend(features.split("\n[").next().expect("features").lines().filter_map(|line| line.split(" = ").next()));
-    // That its keys are the parser's another test says (assets/tests/files/scene_files.rs).
+    // Another test (assets/tests/files/scene_files.rs) checks that these are the parser's keys.
     let keys: BTreeSet<&str> =
         SCENES.lines().filter_map(|line| line.strip_prefix("| `")?.split_once("` |").map(|(key, _)| key)).collect();
     known.extend(&keys);
@@ -252,10 +252,10 @@ fn documents_name_the_keys_of_the_window() {
     let help = help("");
     let help = help.split("Keys in the window:\n").nth(1).expect("keys");
     assert_eq!(documented, keys_of(help), "docs/program.md and --help");
-    // What the program asks for.
+    // The keys that the program queries.
     let mut asked = BTreeSet::new();
     for (_, text) in crate::support::workspace::sources("cli/src") {
-        // Its tests ask for others.
+        // Its tests query others.
         let text = text.split("#[cfg(test)]").next().expect("a program");
         for (at, start) in text.match_indices("Key::") {
             let name: String = text[at + start.len()..].chars().take_while(char::is_ascii_alphanumeric).collect();
@@ -270,7 +270,8 @@ fn documents_name_the_keys_of_the_window() {
     tried.add(documented.len() as u64);
 }
 
-/// Whether a text has a heading with this anchor: its words in lower case with hyphens between, without other signs.
+/// Returns whether a text has a heading with this anchor: its words in lower case, joined by hyphens, without
+/// punctuation.
 fn has_heading(text: &str, anchor: &str) -> bool {
     let anchor_of = |heading: &str| -> String {
         let words = heading.trim_start_matches('#').trim().to_lowercase();
@@ -280,7 +281,7 @@ fn has_heading(text: &str, anchor: &str) -> bool {
     text.lines().filter(|line| line.starts_with('#')).any(|line| anchor_of(line) == anchor)
 }
 
-/// Files that a document names, and variables of the environment.
+/// Files and environment variables that a document names exist.
 #[test]
 fn documents_name_files_that_are_there() {
     let mut tried = Tried::new("documents_name_files_that_are_there", 30);
@@ -313,13 +314,13 @@ fn documents_name_files_that_are_there() {
             "cli/",
         ];
         for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
-            // A line and a column may stand behind it.
+            // A line and a column may follow the path.
             let path = path.find(".rs:").map_or(path, |end| &path[..end + 3]);
             if folders.iter().any(|folder| path.starts_with(folder)) {
                 assert!(root.join(path).exists(), "{document}: there is no {path}");
                 tried.add(1);
             } else if path.ends_with(".rs") && path.contains('/') && !path.contains('*') {
-                // In the engine's sources, or in those of the laboratory.
+                // In the sources of the engine or of another crate.
                 let is_there = ["src", "assets/src", "lab/src", "cli/src"]
                     .iter()
                     .any(|sources| root.join(sources).join(path).exists());
@@ -330,7 +331,7 @@ fn documents_name_files_that_are_there() {
     }
 }
 
-/// The reading itself.
+/// Tests the functions that find options and keys in a text.
 #[test]
 fn options_and_keys_are_found_in_a_text() {
     let text = "|---|---| `--shading flat`, cargo -- --max-error 2; a--b, ---, --N, --at=1 ";

@@ -17,7 +17,7 @@ impl eframe::App for Teapot {
             let pixels = colors.map(|color| egui::Color32::from_rgb(color.r, color.g, color.b)).collect();
             let image = egui::ColorImage::new([Vga::WIDTH, Vga::HEIGHT], pixels);
             texture.set(image, egui::TextureOptions::NEAREST);
-            // What a VGA's screen shows: 320 × 200 pixels that fill 4:3.
+            // As on a VGA's screen: 320 × 200 pixels that fill 4:3.
             ui.image((texture.id(), egui::vec2(960.0, 720.0)));
         });
     }

@@ -19,7 +19,7 @@ async fn main() {
             *pixel = [color.r, color.g, color.b, 255];
         }
         texture.update(&image);
-        // The largest 4:3 that fits: what a VGA's screen shows, whatever the window's shape.
+        // The largest 4:3 rectangle that fits, as on a VGA's screen, whatever the window's shape.
         let height = screen_height().min(screen_width() * 0.75);
         let size = vec2(height / 0.75, height);
         let corner = (vec2(screen_width(), screen_height()) - size) / 2.0;

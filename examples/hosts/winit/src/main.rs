@@ -1,4 +1,4 @@
-//! Frames of mode13h that fill a window of winit, put there by softbuffer.
+//! Frames of mode13h that fill a winit window, by way of softbuffer.
 use mode13h::{mesh::shapes, render::Renderer, scene::Scene, vga::Vga};
 use std::{num::NonZeroU32, time::Instant};
 use winit::{application::ApplicationHandler, error::EventLoopError, event::WindowEvent, event_loop::*, window::*};

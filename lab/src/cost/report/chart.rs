@@ -176,7 +176,7 @@ pub(super) fn points_json(study: &Study) -> String {
     json(study.shadings.iter().map(shading).chain(study.budget.iter().map(budget)))
 }
 
-/// The points of [`budget_svg`](super::budget_svg).
+/// The points of the chart in the section on budgets.
 pub(super) fn budget_points_json(study: &Study) -> String {
     let budget = |row: &crate::cost::BudgetRow| {
         (row.per_frame.median, row.max_error, budget_mark(&budget_name(row), row.max_error))
@@ -187,7 +187,7 @@ pub(super) fn budget_points_json(study: &Study) -> String {
     json(study.budget.iter().map(budget).chain(study.budget.iter().filter_map(single)))
 }
 
-/// The points of [`time_svg`](super::time_svg).
+/// The points of the chart in the section on times.
 pub(super) fn time_points_json(study: &Study) -> String {
     json(study.times.iter().map(|row| {
         let name = asked((100.0 * row.largest).round() / 100.0);

@@ -1,5 +1,5 @@
 //! Properties that hold for every parser, whatever its input. There is one function per parser, shared by the fuzzer
-//! (`fuzz/fuzz_targets`) and the corpora (`tests/fuzz_corpus.rs`); each panics if its property fails.
+//! (`fuzz/fuzz_targets`) and the corpora (`lab/tests/lab/fuzz_corpus.rs`); each panics if its property fails.
 
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -107,7 +107,7 @@ pub fn mtl(bytes: &[u8]) {
     }
 }
 
-/// What two ways of reading the same input must agree on.
+/// The outcome on which two ways of reading the same input must agree.
 fn outcome(result: &Result<Loaded, ModelFileError>) -> Result<&Loaded, String> {
     result.as_ref().map_err(ToString::to_string)
 }
@@ -205,10 +205,10 @@ fn model(bytes: &[u8], name: &str) {
     let _ = model_file::parse(bytes, "standard input", none, &Options::default());
 }
 
-/// That the renderer takes the lights and the camera that a model brings.
+/// Checks that the renderer accepts the lights and the camera of a model.
 fn check_staged(mesh: &Mesh, lights: &[Light], camera: Option<Camera>) {
     let mut scene = Scene::new();
-    // Whether an object can be drawn from here is no matter of theirs.
+    // Whether an object can be drawn from here does not depend on them.
     scene.add(Object::new(shapes::cube()).at(mesh.bounds().centre));
     lights.iter().for_each(|light| _ = scene.add_light(*light));
     scene.camera = camera.unwrap_or(scene.camera);
@@ -486,8 +486,8 @@ pub fn texture(bytes: &[u8]) {
     }
 }
 
-/// A film made from the bytes: its size, its rate, and for each frame one of four palettes and the pixels. Decoded, it
-/// shows the given colours, each for as long as the rate says.
+/// An animation made from the bytes: its size, its rate, and for each frame one of four palettes and the pixels.
+/// Decoded, it shows the given colours, each for as long as the rate says.
 pub fn gif(bytes: &[u8]) {
     let [width, height, rate, pixels @ ..] = bytes else { return };
     let [width, height] = [width, height].map(|side| 1 + usize::from(*side) % 12);

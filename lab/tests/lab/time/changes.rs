@@ -81,7 +81,7 @@ pub(super) const CHANGES: &[Change] = &[
     seen("Scene.fog", |w, r| w.scene.fog = sometimes(r, fog)),
     seen("Scene.settings", |w, _| w.scene.settings = Default::default()),
     unseen("Scene.motions", |w, r| w.scene.motions.truncate(r.within(0, 1) as usize)),
-    // When a picture is taken of it, which only the program uses.
+    // The moment of its picture, which only the program uses.
     unseen("Scene.picture", |w, r| w.scene.picture = r.unit()),
     unseen("Scene.duration", |w, r| w.scene.duration = 1.0 + r.unit()),
     seen("Scene::set_background", |w, r| w.scene.set_background(color(r))),
@@ -220,7 +220,7 @@ pub(super) const CHANGES: &[Change] = &[
     }),
     seen("Scene.settings.vertex_bits", |w, r| w.scene.settings.vertex_bits = sometimes(r, |r| r.within(0, 8) as u8)),
     seen("Scene.settings.channels", |w, r| w.scene.settings.channels = sometimes(r, |r| r.within(0, 1) == 1)),
-    // The program makes it, no renderer.
+    // Only the program makes such a palette, not the renderer.
     unseen("Scene.auto_palette", |w, r| w.scene.auto_palette = r.within(0, 1) == 1),
     // Motions
     seen("Motion::Spin.object", |w, r| spin(w, r, [0.0, 0.3, 0.0], [0.0, 0.2, 0.0])),

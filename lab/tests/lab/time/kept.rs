@@ -191,7 +191,7 @@ fn e1_every_public_field_is_changed() {
         );
         tried.add(1);
     }
-    // What is of a type of the sources is there.
+    // Every name of a type in the list exists in the sources.
     let of_a_type = CHANGES.iter().filter(|change| change.name.contains("::") || change.name.contains('.'));
     for name in of_a_type.map(|change| change.name).chain(EXEMPT.map(|(name, _)| name)) {
         assert!(sources.iter().any(|source| source == name), "{name} is in no source");
