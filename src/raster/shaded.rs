@@ -276,6 +276,7 @@ impl<'a> Shaded8<'a> {
     #[inline(always)]
     fn draw_by<S: Lanes8, const IS_ESTIMATE: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
         let (count, mut first, mut nearer) = (list.count(), 0, 0);
+        let depths = list.depths();
         while first < count {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
@@ -291,16 +292,16 @@ impl<'a> Shaded8<'a> {
                     self.listed.quotients(of, bytes);
                 }
             }
-            nearer += target.write_each(
-                s,
-                first..end,
+            let of = (
                 #[inline(always)]
                 |k| {
                     let Span { at, length, .. } = list.span(k);
-                    Written { at, depth: list.depth(k), bytes: self.bytes.of(k - first), length: length as usize }
+                    Written { at, bytes: self.bytes.of(k - first), length: length as usize }
                 },
-                true,
+                #[inline(always)]
+                |k| depths.of(k),
             );
+            nearer += target.write_each(s, first..end, of, true);
             first = end;
         }
         list.clear(nearer);

@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 use super::Avx2;
-use super::lanes::{FIRST_LANES, Lanes8, intrinsics};
+use super::lanes::{FIRST_LANES, Lanes8, copy_block, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
 
@@ -225,43 +225,39 @@ impl Lanes8 for Avx2 {
     }
 
     #[inline(always)]
-    fn test_four(self, cells: &mut [u32; 4], [z, dz]: [i64; 2], count: usize, keeps: bool) -> u32 {
-        // SAFETY: `self` proves that the processor has the instructions. The mask is the first four of sixteen lanes;
-        // cells are loaded and stored as a whole. Neither requires alignment.
-        unsafe {
-            let dz = _mm_set1_epi64x(dz);
-            let first = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
-            let last = _mm_castsi128_ps(_mm_add_epi64(first, _mm_slli_epi64::<1>(dz)));
-            let upper = _mm_castps_si128(_mm_shuffle_ps::<0b11_01_11_01>(_mm_castsi128_ps(first), last));
-            let there = _mm_loadu_si128(FIRST_LANES[count.min(16)].as_ptr().cast());
-            let before = _mm_loadu_si128(cells.as_ptr().cast());
-            let after = _mm_max_epu32(before, _mm_and_si128(upper, there));
-            if keeps {
-                _mm_storeu_si128(cells.as_mut_ptr().cast(), after);
-            }
-            // The lowest byte of each lane.
-            let stays = _mm_shuffle_epi8(_mm_cmpeq_epi32(before, after), _mm_set1_epi32(0x0C08_0400));
-            _mm_cvtsi128_si32(stays).cast_unsigned()
-        }
+    fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
+        let stay = self.four_stay(cells, depths, count, keeps);
+        // SAFETY: `self` proves that the processor has the instructions.
+        unsafe { _mm_cvtsi128_si32(_mm_shuffle_epi8(stay, _mm_set1_epi32(0x0C08_0400))).cast_unsigned() }
     }
     #[inline(always)]
-    fn test_eight(self, cells: &mut [u32; 8], [z, dz]: [i64; 2], count: usize, keeps: bool) -> u64 {
-        // SAFETY: as in `test_four`, with eight lanes.
-        unsafe {
-            // Arranged so that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
-            let dz = _mm256_set1_epi64x(dz);
-            let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
-            let later = _mm256_and_si256(_mm256_slli_epi64::<2>(dz), _mm256_setr_epi64x(0, 0, -1, -1));
-            let first = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
-            let last = _mm256_castsi256_ps(_mm256_add_epi64(first, _mm256_slli_epi64::<1>(dz)));
-            let upper = _mm256_shuffle_ps::<0b11_01_11_01>(_mm256_castsi256_ps(first), last);
-            let there = _mm256_loadu_si256(FIRST_LANES[count.min(16)].as_ptr().cast());
-            let before = _mm256_loadu_si256(cells.as_ptr().cast());
-            let after = _mm256_max_epu32(before, _mm256_and_si256(_mm256_castps_si256(upper), there));
-            if keeps {
-                _mm256_storeu_si256(cells.as_mut_ptr().cast(), after);
+    fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
+        u64::from_le_bytes(self.low_bytes(self.eight_stay(cells, depths, count, keeps)))
+    }
+    #[inline(always)]
+    fn copy_nearer(
+        self,
+        (pixels, cells): (&mut [u8; 8], &mut [u32; 8]),
+        (bytes, count): ([u8; 8], usize),
+        depths: [i64; 2],
+        keeps: bool,
+    ) -> u32 {
+        if count <= 4
+            && let (Some(pixels), Some(bytes)) = (pixels.first_chunk_mut(), bytes.first_chunk())
+            && let Some(cells) = cells.first_chunk_mut()
+        {
+            let stay = self.four_stay(cells, depths, count, keeps);
+            // SAFETY: `self` proves that the processor has the instructions.
+            unsafe {
+                let stays = _mm_shuffle_epi8(stay, _mm_set1_epi32(0x0C08_0400));
+                let [new, old] = [*bytes, *pixels].map(|four| _mm_cvtsi32_si128(i32::from_le_bytes(four)));
+                *pixels = _mm_cvtsi128_si32(_mm_blendv_epi8(new, old, stays)).to_le_bytes();
+                4 - _mm_movemask_ps(_mm_castsi128_ps(stay)).count_ones()
             }
-            u64::from_le_bytes(self.low_bytes(_mm256_cmpeq_epi32(before, after)))
+        } else {
+            let stay = self.eight_stay(cells, depths, count, keeps);
+            copy_block(pixels, bytes, u64::from_le_bytes(self.low_bytes(stay)));
+            8 - self.to_bitmask(stay).count_ones()
         }
     }
 
@@ -292,6 +288,51 @@ impl Lanes8 for Avx2 {
                     _mm256_storeu_si256(to.cast(), _mm256_permutevar8x32_epi32(from[i][half], lanes));
                 }
             }
+        }
+    }
+}
+
+impl Avx2 {
+    /// −1 where one of four pixels stays: its depth is not greater than its cell, or it is not among the first `count`.
+    /// Depths are those of [`Lanes8::test_four`]; with `keeps` the cells store greater ones.
+    #[inline(always)]
+    pub(crate) fn four_stay(self, cells: &mut [u32; 4], [z, dz]: [i64; 2], count: usize, keeps: bool) -> __m128i {
+        // SAFETY: `self` proves that the processor has the instructions. The mask is the first four of sixteen lanes;
+        // cells are loaded and stored as a whole. Neither requires alignment.
+        unsafe {
+            let dz = _mm_set1_epi64x(dz);
+            let first = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
+            let last = _mm_castsi128_ps(_mm_add_epi64(first, _mm_slli_epi64::<1>(dz)));
+            let upper = _mm_castps_si128(_mm_shuffle_ps::<0b11_01_11_01>(_mm_castsi128_ps(first), last));
+            let there = _mm_loadu_si128(FIRST_LANES[count.min(16)].as_ptr().cast());
+            let before = _mm_loadu_si128(cells.as_ptr().cast());
+            let after = _mm_max_epu32(before, _mm_and_si128(upper, there));
+            if keeps {
+                _mm_storeu_si128(cells.as_mut_ptr().cast(), after);
+            }
+            _mm_cmpeq_epi32(before, after)
+        }
+    }
+
+    /// [`four_stay`](Self::four_stay) for eight pixels.
+    #[inline(always)]
+    fn eight_stay(self, cells: &mut [u32; 8], [z, dz]: [i64; 2], count: usize, keeps: bool) -> __m256i {
+        // SAFETY: as in `four_stay`, with eight lanes.
+        unsafe {
+            // Arranged so that the upper halves of both are pixels 0 to 7: 0, 1, 4, 5 and 2, 3, 6, 7.
+            let dz = _mm256_set1_epi64x(dz);
+            let odd = _mm256_and_si256(dz, _mm256_setr_epi64x(0, -1, 0, -1));
+            let later = _mm256_and_si256(_mm256_slli_epi64::<2>(dz), _mm256_setr_epi64x(0, 0, -1, -1));
+            let first = _mm256_add_epi64(_mm256_add_epi64(_mm256_set1_epi64x(z), odd), later);
+            let last = _mm256_castsi256_ps(_mm256_add_epi64(first, _mm256_slli_epi64::<1>(dz)));
+            let upper = _mm256_shuffle_ps::<0b11_01_11_01>(_mm256_castsi256_ps(first), last);
+            let there = _mm256_loadu_si256(FIRST_LANES[count.min(16)].as_ptr().cast());
+            let before = _mm256_loadu_si256(cells.as_ptr().cast());
+            let after = _mm256_max_epu32(before, _mm256_and_si256(_mm256_castps_si256(upper), there));
+            if keeps {
+                _mm256_storeu_si256(cells.as_mut_ptr().cast(), after);
+            }
+            _mm256_cmpeq_epi32(before, after)
         }
     }
 }

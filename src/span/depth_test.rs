@@ -4,7 +4,6 @@
 //! otherwise 255. The loops that show texels or copy bytes write under these masks, so a hidden
 //! block costs no more than its test.
 
-use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, copy_block};
 
@@ -91,13 +90,6 @@ pub(crate) fn copy_span<S: Lanes8>(
     keeps: bool,
     depths: [i64; 2],
 ) -> u32 {
-    if !IS_COMPACT
-        && length <= LANES
-        && let (Some(block), Some(eight), Some(new)) =
-            (row.first_chunk_mut(), cells.first_chunk_mut(), bytes.first_chunk())
-    {
-        return s.copy_nearer((block, eight), (*new, length), depths, keeps);
-    }
     let mut masks = Masks::default();
     let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return 0 };
     let nearer = test_span(s, (cells, length), depths, keeps, masks);

@@ -12,6 +12,7 @@ use core::ops::Range;
 use super::Kernel;
 use super::depth::{Cell, Cells, copy_nearer, copy_nearer_keep_depth, fill_nearer};
 use super::depth_test::copy_span;
+use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
 
@@ -318,9 +319,14 @@ impl SpanList {
     /// The depth of span `k`, which is below [`count`](Self::count).
     #[inline(always)]
     pub(crate) fn depth(&self, k: usize) -> SpanDepth {
-        let k = k.min(CAPACITY);
+        self.depths().of(k)
+    }
+
+    /// The depths of all spans, for loops.
+    #[inline(always)]
+    pub(crate) fn depths(&self) -> SpanDepths<'_> {
         let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
-        SpanDepth { cell: cell[k], z: self.z[k], dz: self.dz[k] }
+        SpanDepths { cell, z: &self.z, dz: &self.dz }
     }
 
     /// The spans, in order.
@@ -490,10 +496,9 @@ pub(crate) struct Target<'a> {
     pub(crate) kernel: Kernel,
 }
 
-/// The bytes of a span, with its offset and depth. Bytes after the first `length` are not its own.
+/// The bytes of a span, and its offset. Bytes after the first `length` are not its own.
 pub(crate) struct Written<'a> {
     pub(crate) at: u32,
-    pub(crate) depth: SpanDepth,
     pub(crate) bytes: &'a [u8],
     /// At most 64.
     pub(crate) length: usize,
@@ -507,28 +512,42 @@ impl Target<'_> {
         &mut self,
         s: S,
         spans: Range<usize>,
-        of: impl Fn(usize) -> Written<'b>,
+        (of, depth_of): (impl Fn(usize) -> Written<'b>, impl Fn(usize) -> SpanDepth),
         keeps: bool,
     ) -> u32 {
         let (pixels, mut nearer) = (&mut *self.pixels, 0);
         match &mut self.cells {
             None => {
-                for span in spans {
-                    let Written { at, bytes, length, .. } = of(span);
+                for k in spans {
+                    let Written { at, bytes, length } = of(k);
                     self.kernel.copy(length, pixels.get_mut(at as usize..).unwrap_or_default(), bytes);
                 }
             }
             Some(Cells::U32(cells)) => {
-                for span in spans {
-                    let Written { at, depth: SpanDepth { cell, z, dz }, bytes, length } = of(span);
-                    if let (Some(row), Some(cells)) = (pixels.get_mut(at as usize..), cells.get_mut(cell as usize..)) {
+                for k in spans {
+                    let Written { at, bytes, length } = of(k);
+                    let (at, cell) = (at as usize, depth_of(k).cell as usize);
+                    // Most spans.
+                    if !IS_COMPACT
+                        && length <= LANES
+                        && let Some(new) = bytes.first_chunk()
+                        && let Some(block) = chunk_at(pixels, at)
+                        && let Some(eight) = chunk_at(cells, cell)
+                    {
+                        // Read after the checks, so that each is broadcast from memory.
+                        let SpanDepth { z, dz, .. } = depth_of(k);
+                        nearer += s.copy_nearer((block, eight), (*new, length), [z, dz], keeps);
+                    } else if let Some(row) = pixels.get_mut(at..)
+                        && let Some(cells) = cells.get_mut(cell..)
+                    {
+                        let SpanDepth { z, dz, .. } = depth_of(k);
                         nearer += copy_span(s, (row, cells), (bytes, length), keeps, [z, dz]);
                     }
                 }
             }
             Some(Cells::U16(cells)) => {
-                for span in spans {
-                    let Written { at, depth: SpanDepth { cell, z, dz }, bytes, length } = of(span);
+                for k in spans {
+                    let (Written { at, bytes, length }, SpanDepth { cell, z, dz }) = (of(k), depth_of(k));
                     let bytes = &bytes[..length.min(bytes.len())];
                     if let (Some(row), Some(cells)) = (pixels.get_mut(at as usize..), cells.get_mut(cell as usize..)) {
                         nearer += match keeps {
@@ -547,17 +566,25 @@ impl Target<'_> {
     pub(crate) fn write<S: Lanes8>(
         &mut self,
         s: S,
-        Written { at, depth, bytes, length }: Written<'_>,
+        Written { at, bytes, length }: Written<'_>,
+        depth: SpanDepth,
         keeps: bool,
     ) -> u32 {
-        self.write_each(
-            s,
-            0..1,
+        let of = (
             #[inline(always)]
-            |_| Written { at, depth, bytes, length },
-            keeps,
-        )
+            |_| Written { at, bytes, length },
+            #[inline(always)]
+            |_| depth,
+        );
+        self.write_each(s, 0..1, of, keeps)
     }
+}
+
+/// Eight elements from an index on, if there are that many.
+#[inline(always)]
+fn chunk_at<T>(of: &mut [T], at: usize) -> Option<&mut [T; LANES]> {
+    // No overflow: offsets are below 2³¹.
+    of.get_mut(at..at + LANES)?.first_chunk_mut()
 }
 
 /// A span of a list.
@@ -577,6 +604,23 @@ pub(crate) struct SpanDepth {
     pub(crate) cell: u32,
     pub(crate) z: i64,
     pub(crate) dz: i64,
+}
+
+/// The depths of the spans of a list.
+#[derive(Clone, Copy)]
+pub(crate) struct SpanDepths<'a> {
+    cell: &'a Numbers,
+    z: &'a Depths,
+    dz: &'a Depths,
+}
+
+impl SpanDepths<'_> {
+    /// The depth of span `k`.
+    #[inline(always)]
+    pub(crate) fn of(self, k: usize) -> SpanDepth {
+        let k = k.min(CAPACITY);
+        SpanDepth { cell: self.cell[k], z: self.z[k], dz: self.dz[k] }
+    }
 }
 
 /// Eight elements from this index on.

@@ -87,18 +87,18 @@ pub fn write_nearer<D: Cell>(
         let cell = first as u32;
         let depth = SpanDepth { cell, z: z.wrapping_add(dz.wrapping_mul(first as i64)) << 8, dz: dz << 8 };
         let n = (length - first).min(SpanBytes::LENGTH);
-        write(kernel.simd_level(), target, Written { at: cell, depth, bytes: &bytes[first..], length: n }, keeps)
+        write(kernel.simd_level(), target, (Written { at: cell, bytes: &bytes[first..], length: n }, depth), keeps)
     };
     (0..length).step_by(SpanBytes::LENGTH).map(span).sum()
 }
 
 compiled_for_each_level! {
-    fn write[][](target: &mut Target<'_>, span: Written<'_>, keeps: bool) -> u32 = write_by;
+    fn write[][](target: &mut Target<'_>, span: (Written<'_>, SpanDepth), keeps: bool) -> u32 = write_by;
 }
 
 #[inline(always)]
-fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, span: Written<'_>, keeps: bool) -> u32 {
-    target.write(s, span, keeps)
+fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, (span, depth): (Written<'_>, SpanDepth), keeps: bool) -> u32 {
+    target.write(s, span, depth, keeps)
 }
 
 fn lanes(spans: &[ListedSpan]) -> Spans8<Portable, ()> {

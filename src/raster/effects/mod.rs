@@ -237,16 +237,16 @@ fn write_by<S: Lanes8>(
     keeps: bool,
 ) -> u32 {
     let Some(table) = blend else {
-        return target.write_each(
-            s,
-            0..spans.count(),
+        let of = (
             #[inline(always)]
             |i| {
                 let (first, Span { at, length, .. }) = spans.drawn(i);
-                Written { at, depth: spans.depth(i), bytes: &bytes[first..], length: length as usize }
+                Written { at, bytes: &bytes[first..], length: length as usize }
             },
-            keeps,
+            #[inline(always)]
+            |i| spans.depth(i),
         );
+        return target.write_each(s, 0..spans.count(), of, keeps);
     };
     let mut nearer = 0;
     for i in 0..spans.count() {
@@ -256,7 +256,7 @@ fn write_by<S: Lanes8>(
             let n = bytes.len().min(length);
             lookup_row(&mut bytes[..n], row, table);
         }
-        nearer += target.write(s, Written { at, depth: spans.depth(i), bytes, length }, keeps);
+        nearer += target.write(s, Written { at, bytes, length }, spans.depth(i), keeps);
     }
     nearer
 }

@@ -14,7 +14,7 @@ use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
-use crate::span::list::{self, SpanDepth, SpanList};
+use crate::span::list::{self, SpanDepth, SpanDepths, SpanList};
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
 
 /// The most pixels of a span.
@@ -28,6 +28,7 @@ pub(super) const ROOM: usize = PIXELS + LANES;
 pub(super) struct Spans<'a> {
     listed: &'a ListedFaces<'a>,
     list: &'a SpanList,
+    depths: SpanDepths<'a>,
     /// Index of the first in the list.
     first: usize,
     count: usize,
@@ -105,13 +106,13 @@ impl<'a> Spans<'a> {
             // No more than the list has.
             offsets[count] = end;
         }
-        Self { listed, list, first, count, pixels: offsets }
+        Self { listed, list, depths: list.depths(), first, count, pixels: offsets }
     }
 
     /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
     #[inline]
     pub(super) fn all(listed: &'a ListedFaces<'_>, list: &'a SpanList) -> Self {
-        Self { listed, list, first: 0, count: list.count(), pixels: &NO_OFFSETS }
+        Self { listed, list, depths: list.depths(), first: 0, count: list.count(), pixels: &NO_OFFSETS }
     }
 
     #[inline(always)]
@@ -308,7 +309,7 @@ impl<'a> Spans<'a> {
     /// The depth of the first drawn pixel of span `i`.
     #[inline(always)]
     pub(super) fn depth(&self, i: usize) -> SpanDepth {
-        self.list.depth(self.first + i)
+        self.depths.of(self.first + i)
     }
 }
 

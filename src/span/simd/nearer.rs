@@ -21,32 +21,33 @@ const SIXTEEN: usize = 16;
 const FOUR: usize = 4;
 
 /// Fills every span of a list. Returns the number of pixels written.
-pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
+pub(crate) fn fill_spans(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill(pixels, cells, spans, |_, _| Own::Linear) }
+    unsafe { fill(avx2, pixels, cells, spans, |_, _| Own::Linear) }
 }
 
 /// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
 /// Returns the number of pixels written.
 pub(crate) fn fill_spans_16_16(
-    _: Avx2,
+    avx2: Avx2,
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: &SpanList,
     shades: impl Fn(usize, u32) -> (u32, u32),
 ) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill_16_16(pixels, cells, spans, shades) }
+    unsafe { fill_16_16(avx2, pixels, cells, spans, shades) }
 }
 
 #[target_feature(enable = "avx2")]
 fn fill_16_16(
+    avx2: Avx2,
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: &SpanList,
     shades: impl Fn(usize, u32) -> (u32, u32),
 ) -> u32 {
-    fill(pixels, cells, spans, |number, span| {
+    fill(avx2, pixels, cells, spans, |number, span| {
         let (start, step) = shades(number, span.paint);
         Own::Fixed16(start, step)
     })
@@ -66,7 +67,7 @@ enum Own {
 /// A span that does not lie inside the pixels and cells is not drawn. (This one function fills a whole list: a function
 /// that fills one span would be too large to be inlined in the loop, and is a quarter slower.)
 #[target_feature(enable = "avx2")]
-fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
+fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
     // Pixels of all iterations, four for each span and these; and per lane those that were not written, as a negative
     // count. Sums are modulo 2³².
     let mut more = 0_u32;
@@ -84,7 +85,7 @@ fn fill(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usi
                     && let Some(near) = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut())
                 {
                     let (span, depth) = (spans.span(number), spans.depth(number));
-                    let stay = four(row, near, span, depth, own(number, &span));
+                    let stay = four(avx2, (row, near), span, depth, own(number, &span));
                     stayed = _mm256_add_epi32(stayed, _mm256_zextsi128_si256(stay));
                     number += 1;
                     continue;
@@ -228,24 +229,6 @@ fn bytes_of(a: __m256i, b: __m256i) -> [__m128i; 2] {
     [_mm_unpacklo_epi32(low, high), _mm_unpackhi_epi32(low, high)]
 }
 
-/// −1 where one of up to four pixels stays, as in [`Depths::stay`].
-#[inline]
-#[target_feature(enable = "avx2")]
-fn four_stay(cells: &mut [u32; FOUR], z: i64, dz: i64, length: usize) -> __m128i {
-    let dz = _mm_set1_epi64x(dz);
-    let z0 = _mm_add_epi64(_mm_set1_epi64x(z), _mm_unpacklo_epi64(_mm_setzero_si128(), dz));
-    let z1 = _mm_add_epi64(z0, _mm_slli_epi64(dz, 1));
-    let upper = _mm_shuffle_ps(_mm_castsi128_ps(z0), _mm_castsi128_ps(z1), 0b11_01_11_01);
-    // (From a comparison of the length, the compiler would make a masked store of the depths.)
-    let depths = _mm_and_si128(_mm_castps_si128(upper), _mm256_castsi256_si128(first(length)[0]));
-    // SAFETY: four u32; the load requires no alignment.
-    let before = unsafe { _mm_loadu_si128(cells.as_ptr().cast()) };
-    let after = _mm_max_epu32(before, depths);
-    // SAFETY: four u32; the store requires no alignment.
-    unsafe { _mm_storeu_si128(cells.as_mut_ptr().cast(), after) };
-    _mm_cmpeq_epi32(before, after)
-}
-
 /// Fills one span, eight pixels per iteration, with its own bytes if it has any. Returns per lane the pixels that were
 /// not written, as a negative count.
 #[inline]
@@ -340,8 +323,14 @@ fn sixteen(pixels: &mut [u8; SIXTEEN], cells: &mut [u32; SIXTEEN], depths: [__m2
 /// Fills one span of up to four pixels where it is nearer.
 #[inline]
 #[target_feature(enable = "avx2")]
-fn four(row: &mut [u8; FOUR], cells: &mut [u32; FOUR], span: Span, depth: SpanDepth, own: Own) -> __m128i {
-    let stay = four_stay(cells, depth.z, depth.dz, span.length as usize);
+fn four(
+    avx2: Avx2,
+    (row, cells): (&mut [u8; FOUR], &mut [u32; FOUR]),
+    span: Span,
+    depth: SpanDepth,
+    own: Own,
+) -> __m128i {
+    let stay = avx2.four_stay(cells, [depth.z, depth.dz], span.length as usize, true);
     let lanes = _mm_setr_epi32(0, 1, 2, 3);
     let bytes = _mm_cvtepu8_epi32(_mm_cvtsi32_si128(i32::from_le_bytes(*row)));
     let after = match own {
