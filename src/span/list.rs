@@ -582,7 +582,7 @@ impl Target<'_> {
 
 /// Eight elements from an index on, if there are that many.
 #[inline(always)]
-fn chunk_at<T>(of: &mut [T], at: usize) -> Option<&mut [T; LANES]> {
+pub(crate) fn chunk_at<T>(of: &mut [T], at: usize) -> Option<&mut [T; LANES]> {
     // No overflow: offsets are below 2³¹.
     of.get_mut(at..at + LANES)?.first_chunk_mut()
 }

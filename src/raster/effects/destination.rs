@@ -6,7 +6,7 @@ use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{F32Lanes8, Lanes8};
 use crate::span::depth_test::{Masks, test_span};
-use crate::span::list::SpanDepth;
+use crate::span::list::{SpanDepth, chunk_at};
 use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.
@@ -21,20 +21,56 @@ pub(super) trait Destination {
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
 
-    /// Writes texels to the pixels of span `i` from `at` on. The number is that of the span's drawn pixels before
-    /// these.
+    /// The drawn pixels of span `i`, or `None` if all of them turn out to be hidden.
+    #[inline(always)]
+    fn begin<S: Lanes8>(&mut self, _: S, spans: &Spans<'_>, i: usize) -> Option<DrawnPixels> {
+        let (at, length, skipped) = self.span(spans, i);
+        Some(DrawnPixels { at, length, skipped, stays: u64::MAX })
+    }
+
+    /// Writes texels to these pixels of span `i`; `before` of its drawn pixels come earlier.
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
-        _: (&Spans<'_>, usize, u32),
-        (at, length): (usize, usize),
+        (_spans, _i, _before): (&Spans<'_>, usize, u32),
+        DrawnPixels { at, length, .. }: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         places: impl PlacesAlong<S>,
     ) {
         if let Some(row) = self.all().get_mut(at..) {
             show_along(s, (row, length), texels, (tint, along), places);
         }
+    }
+}
+
+/// Pixels of a span that are drawn.
+#[derive(Clone, Copy)]
+pub(super) struct DrawnPixels {
+    /// Where they begin.
+    at: usize,
+    pub(super) length: usize,
+    /// How many leading pixels of the span are skipped.
+    pub(super) skipped: u32,
+    /// The mask of the pixels that stay as they are, if they are a single block whose depths have been tested;
+    /// otherwise all bits.
+    stays: u64,
+}
+
+impl DrawnPixels {
+    /// Some of these pixels, `before` of which come earlier.
+    #[inline(always)]
+    pub(super) fn part(self, before: usize, length: usize) -> Self {
+        let mut part = Self { at: self.at + before, length, ..self };
+        if self.stays != u64::MAX {
+            // In a single block both numbers are at most eight.
+            part.stays = (self.stays >> (8 * (before % LANES))) | behind(length);
+            // All of the part is hidden.
+            if part.stays == u64::MAX {
+                part.length = 0;
+            }
+        }
+        part
     }
 }
 
@@ -143,46 +179,52 @@ impl Destination for Masked<'_> {
     }
 
     #[inline(always)]
+    fn begin<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize) -> Option<DrawnPixels> {
+        let (at, length, skipped) = self.span(spans, i);
+        let mut pixels = DrawnPixels { at, length, skipped, stays: u64::MAX };
+        // Most spans are a single block. It is tested first, so that nothing is computed for a hidden one.
+        if IS_COMPACT || length > LANES || at + LANES > self.pixels.len() {
+            return Some(pixels);
+        }
+        let Some(cells) = &mut self.cells else {
+            pixels.stays = behind(length);
+            return Some(pixels);
+        };
+        if let Some(eight) = chunk_at(cells, spans.depth(i).cell as usize) {
+            // Read after the checks, so that each is broadcast from memory.
+            let SpanDepth { z, dz, .. } = spans.depth(i);
+            let stays = s.test_block(eight, [z, dz], length, self.keeps);
+            if stays == u64::MAX {
+                return None;
+            }
+            self.nearer += stays.count_zeros() / 8;
+            pixels.stays = stays;
+        }
+        Some(pixels)
+    }
+
+    #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
         (spans, i, before): (&Spans<'_>, usize, u32),
-        (at, length): (usize, usize),
+        DrawnPixels { at, length, stays, .. }: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         mut places: impl PlacesAlong<S>,
     ) {
+        if stays != u64::MAX {
+            if let Some(block) = chunk_at(self.pixels, at) {
+                show_block(s, (block, stays), texels, (tint, along), &mut places);
+            }
+            return;
+        }
         let Some(row) = self.pixels.get_mut(at..) else { return };
-        let (mut cells, mut depths) = (None, [0; 2]);
-        if let Some(all) = &mut self.cells {
-            let SpanDepth { cell, z, dz } = spans.depth(i);
-            let Some(of_span) = all.get_mut((cell + before) as usize..) else { return };
-            (cells, depths) = (Some(of_span), [z.wrapping_add(dz.wrapping_mul(before.into())), dz]);
-        }
-        // Most spans are a single block, whose mask needs no memory.
-        if !IS_COMPACT
-            && length <= LANES
-            && let Some(block) = row.first_chunk_mut()
-        {
-            let mut tested = None;
-            match &mut cells {
-                Some(cells) => {
-                    if let Some(eight) = cells.first_chunk_mut() {
-                        tested = Some(s.test_block(eight, depths, length, self.keeps));
-                    }
-                }
-                None => tested = Some(behind(length)),
-            }
-            if let Some(stays) = tested {
-                if stays != u64::MAX {
-                    self.nearer += stays.count_zeros() / 8;
-                    show_block(s, (block, stays), texels, (tint, along), &mut places);
-                }
-                return;
-            }
-        }
         let mut masks = Masks::default();
         let Some(masks) = masks.get_mut(..length.div_ceil(LANES)) else { return };
-        if let Some(cells) = cells {
+        if let Some(all) = &mut self.cells {
+            let SpanDepth { cell, z, dz } = spans.depth(i);
+            let Some(cells) = all.get_mut((cell + before) as usize..) else { return };
+            let depths = [z.wrapping_add(dz.wrapping_mul(before.into())), dz];
             let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
             self.nearer += nearer;
             if nearer == 0 {

@@ -113,8 +113,8 @@ fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, t
         return;
     }
     for i in 0..spans.count() {
-        let (at, length, skipped) = to.span(spans, i);
-        let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-        to.show(s, (spans, i, 0), (at, length), (Texels::ONE, tint, along), FirstPlace(s));
+        let Some(pixels) = to.begin(s, spans, i) else { continue };
+        let along = &mut tint.begin(s, spans.values::<T>(i, pixels.skipped));
+        to.show(s, (spans, i, 0), pixels, (Texels::ONE, tint, along), FirstPlace(s));
     }
 }

@@ -4,7 +4,7 @@
 //! into the stages' buffer. Mispredicting the length of a row costs as much as several pixels, so the last few pixels
 //! of a span are written with a mask.
 
-use super::destination::{Destination, InBuffer, Pair};
+use super::destination::{Destination, DrawnPixels, InBuffer, Pair};
 use super::listing::FaceCorners;
 use super::pipeline::{Image, LEVELS, TextureStage};
 use super::spans::Spans;
@@ -200,14 +200,15 @@ fn show_line<S: Lanes8, T: Tint, D: Destination>(
     to: &mut D,
 ) {
     let s = places.s;
-    let (at, length, skipped) = to.span(spans, i);
+    let Some(pixels) = to.begin(s, spans, i) else { return };
+    let skipped = pixels.skipped;
     if skipped > 0 {
         // At most 63; the sums are modulo 2³².
         from[0] = from[0].wrapping_add(du.wrapping_mul(skipped));
         from[1] = from[1].wrapping_add(dv.wrapping_mul(skipped));
     }
     let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-    to.show(s, (spans, i, 0), (at, length), (image, tint, along), AffineAlong::new(places, image, [from, [du, dv]]));
+    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(places, image, [from, [du, dv]]));
 }
 
 #[inline(always)]
@@ -240,9 +241,10 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
             i += 2;
             continue;
         }
-        let (at, length, skipped) = to.span(spans, i);
-        // At most 64.
-        show_part((spans, i, 0), (at, length), skipped as usize, ((image, 0), places), tint, (to, level));
+        if let Some(pixels) = to.begin(s, spans, i) {
+            // At most 64.
+            show_part((spans, i, 0), pixels, pixels.skipped as usize, ((image, 0), places), tint, (to, level));
+        }
         i += 1;
     }
 }
@@ -272,7 +274,7 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     let mut image = (all[0], 0);
     let mut places = PlaceLanes::of_level(s, image);
     for i in 0..spans.count() {
-        let (at, length, skipped) = to.span(spans, i);
+        let Some(pixels) = to.begin(s, spans, i) else { continue };
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
         // Only the loop with quotients in f32 is inlined, since each loop takes long to compile.
         if let Some(level) = single.filter(|_| !IS_COMPACT && spans.fits_singles(i)) {
@@ -281,14 +283,14 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
                 places = PlaceLanes::of_level(s, image);
             }
             // At most 64.
-            show_in_singles((spans, i, 0), (at, length), skipped as usize, (image, places), tint, to);
+            show_in_singles((spans, i, 0), pixels, pixels.skipped as usize, (image, places), tint, to);
             continue;
         }
         let to = (&mut *to, level);
         // A closure that moves: see `show_part`.
         s.apart(
             #[inline(always)]
-            move || show_parts(s, (spans, i), (at, length, skipped), (all, last_level, single), tint, to),
+            move || show_parts(s, (spans, i), pixels, (all, last_level, single), tint, to),
         );
     }
 }
@@ -298,14 +300,15 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
 fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     s: S,
     (spans, i): (&Spans<'_>, usize),
-    (at, length, skipped): (usize, usize, u32),
+    pixels: DrawnPixels,
     (all, last_level, single): (&[Texels<'_>; LEVELS], u32, Option<u32>),
     tint: T,
     (to, lanes): (&mut D, Level),
 ) {
     const EVERY: usize = self::EVERY as usize;
     // At most 64, all of them.
-    let (mut first, end, last) = (skipped as usize, skipped as usize + length, spans.last(i));
+    let skipped = pixels.skipped as usize;
+    let (mut first, end, last) = (skipped, skipped + pixels.length, spans.last(i));
     let level_of_16 = |begin: usize| {
         let k = middle(begin as i32, last);
         let estimated = if HAS_F64 { spans.level(i, k, last_level) } else { None };
@@ -318,7 +321,7 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     let mut next = if single.is_some() { end } else { first / EVERY * EVERY };
     let mut level = single.unwrap_or_else(|| level_of_16(next));
     while first < end {
-        let (shown, before) = (level, first - skipped as usize);
+        let (shown, before) = (level, first - skipped);
         while level == shown && next < end {
             next += EVERY;
             if next < end {
@@ -327,7 +330,14 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
         }
         let (place, n) = ((spans, i, before as u32), next.min(end) - first);
         let image = (all[shown as usize % LEVELS], shown);
-        show_part(place, (at + before, n), first, (image, PlaceLanes::of_level(s, image)), tint, (&mut *to, lanes));
+        show_part(
+            place,
+            pixels.part(before, n),
+            first,
+            (image, PlaceLanes::of_level(s, image)),
+            tint,
+            (&mut *to, lanes),
+        );
         first += n;
     }
 }
@@ -336,14 +346,14 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
-    (at, length): (usize, usize),
+    pixels: DrawnPixels,
     first: usize,
     (image, places): (LevelTexels<'_>, PlaceLanes<S>),
     tint: T,
     (to, level): (&mut D, Level),
 ) {
     if !IS_COMPACT && spans.fits_singles(i) {
-        show_in_singles((spans, i, before), (at, length), first, (image, places), tint, to);
+        show_in_singles((spans, i, before), pixels, first, (image, places), tint, to);
     } else {
         // A closure that moves, so that nothing that the other loops use has to be in memory.
         places.s.apart(
@@ -354,9 +364,9 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
                 let all = StoredAlong::new(
                     places.s,
                     #[inline(always)]
-                    |places| places_in_doubles(level, (spans, i), image, (first, first + length), places),
+                    |places| places_in_doubles(level, (spans, i), image, (first, first + pixels.length), places),
                 );
-                to.show(places.s, (spans, i, before), (at, length), (image.0, tint, along), all);
+                to.show(places.s, (spans, i, before), pixels, (image.0, tint, along), all);
             },
         );
     }
@@ -366,7 +376,7 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
 #[inline(always)]
 fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
-    at: (usize, usize),
+    pixels: DrawnPixels,
     first: usize,
     (image, places): (LevelTexels<'_>, PlaceLanes<S>),
     tint: T,
@@ -378,7 +388,7 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     // At most 64.
     let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
     let all = singles_along(places, spans.singles(i), first, exact);
-    to.show(places.s, (spans, i, before), at, (image.0, tint, along), all);
+    to.show(places.s, (spans, i, before), pixels, (image.0, tint, along), all);
 }
 
 compiled_for_each_level! {
