@@ -46,10 +46,11 @@ impl<S: Lanes8> Ramps<S> for SpanValues {
     #[inline(always)]
     fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S> {
         // The sums are modulo 2¹⁶; the bits above are not read.
-        let (value, step) = (of(self).cast_signed(), (of(self) >> 16).cast_signed());
-        let first = value.wrapping_add(step.wrapping_mul(self.skipped.cast_signed()));
-        let values = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
-        [values, s.splat_i32(step.wrapping_mul(LANES as i32))]
+        let values = s.splat_i32(of(self).cast_signed());
+        let steps = s.shr_i32(values, 16);
+        // At most 63.
+        let numbers = s.add_i32(s.load_i32(&NUMBERS), s.splat_i32(self.skipped.cast_signed()));
+        [s.add_i32(values, s.mul_i32(steps, numbers)), s.shl_i32(steps, 3)]
     }
 }
 
