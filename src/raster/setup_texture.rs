@@ -517,21 +517,19 @@ impl PerspectivePlanes8 {
         }
     }
 
-    /// Returns whether quotients may be taken in f32.
+    /// The sums rounded to f32, if quotients may be taken in f32: see [`fits_singles`].
     #[inline(always)]
-    pub(super) fn fits_singles(&self, lane: usize) -> bool {
-        self.fits >> (lane % LANES) & 1 != 0
-    }
-
-    /// The sums rounded to f32, if quotients [may](Self::fits_singles) be taken in f32.
-    #[inline(always)]
-    pub(super) fn singles(&self, lane: usize, sums: [f64; 3]) -> PerspectiveSums<f32> {
+    pub(super) fn singles(&self, lane: usize, sums: impl FnOnce() -> [f64; 3]) -> Option<PerspectiveSums<f32>> {
+        let lane = lane % LANES;
+        if self.fits >> lane & 1 == 0 {
+            return None;
+        }
         // Rounds.
-        let (lane, [u, v, d], [du, dv, dd]) = (lane % LANES, sums.map(|sum| sum as f32), &self.single_step);
-        PerspectiveSums {
+        let ([u, v, d], [du, dv, dd]) = (sums().map(|sum| sum as f32), &self.single_step);
+        Some(PerspectiveSums {
             numerators: [[u, du[lane]], [v, dv[lane]]],
             divisors: [d, dd[lane]],
             base: [self.base[0][lane], self.base[1][lane]],
-        }
+        })
     }
 }

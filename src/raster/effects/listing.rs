@@ -345,31 +345,61 @@ pub(super) struct ListedFaces<'a> {
     pub(super) direct: Option<Direct<'a>>,
 }
 
-impl ListedFaces<'_> {
-    /// The mapping and the last level of an image with levels.
-    #[cfg(test)]
-    pub(super) fn levels(&self) -> Option<(Option<Mapping>, u32)> {
-        Some((self.wanted.texture, self.wanted.last_level?))
-    }
+/// The data of listed spans and of their faces, for loops.
+#[derive(Clone, Copy)]
+pub(super) struct SpanData<'a> {
+    planes: &'a [FacePlanes8; Batches::COUNT],
+    numbers: &'a SpanNumbers<NUMBERS>,
+    coordinates: &'a SpanNumbers<COORDINATES>,
+    sums: &'a SpanStarts<SUMS>,
+}
 
+impl<'a> SpanData<'a> {
     /// The mark of span `k` of the list.
     #[inline(always)]
-    pub(super) fn mark(&self, k: usize) -> Mark {
+    pub(super) fn mark(self, k: usize) -> Mark {
         Mark([self.numbers.of(k, 0), self.numbers.of(k, 1)])
     }
 
     /// u and v at the first pixel of span `k`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
-    pub(super) fn affine(&self, k: usize) -> [[u32; 2]; 2] {
+    pub(super) fn affine(self, k: usize) -> [[u32; 2]; 2] {
         let of = |i: usize| self.coordinates.of(k, i);
         [[of(0), of(1)], [of(2), of(3)]]
     }
 
     /// The sums at the first pixel of span `k`, where the texture is linear on the face.
     #[inline(always)]
-    pub(super) fn sums(&self, k: usize) -> [f64; SUMS] {
+    pub(super) fn sums(self, k: usize) -> [f64; SUMS] {
         let [u, v, d] = self.sums.of(k);
         [f64::from_bits(u.cast_unsigned()), f64::from_bits(v.cast_unsigned()), f64::from_bits(d.cast_unsigned())]
+    }
+
+    /// The planes of a face's batch, and the face's lane.
+    #[inline(always)]
+    pub(super) fn planes(self, face: usize) -> (&'a FacePlanes8, usize) {
+        let (batch, lane) = Batches::of_face(face);
+        (&self.planes[batch], lane)
+    }
+
+    /// The linear value in this slot at the first pixel of span `k`, with the step in the upper half.
+    #[inline(always)]
+    pub(super) fn value(self, k: usize, slot: usize) -> u32 {
+        self.numbers.of(k, 2 + slot)
+    }
+}
+
+impl ListedFaces<'_> {
+    /// The data of the spans and of their faces.
+    #[inline(always)]
+    pub(super) fn data(&self) -> SpanData<'_> {
+        SpanData { planes: self.planes, numbers: self.numbers, coordinates: self.coordinates, sums: self.sums }
+    }
+
+    /// The mapping and the last level of an image with levels.
+    #[cfg(test)]
+    pub(super) fn levels(&self) -> Option<(Option<Mapping>, u32)> {
+        Some((self.wanted.texture, self.wanted.last_level?))
     }
 
     /// A face, and its corners' values.
@@ -388,13 +418,6 @@ impl ListedFaces<'_> {
         }
         let corners = self.corners(face);
         (corners.perspective_texture(), self.wanted.last_level.map(|_| corners.levels()))
-    }
-
-    /// The planes of a face's batch, and the face's lane.
-    #[inline(always)]
-    pub(super) fn planes(&self, face: usize) -> (&FacePlanes8, usize) {
-        let (batch, lane) = Batches::of_face(face);
-        (&self.planes[batch], lane)
     }
 }
 

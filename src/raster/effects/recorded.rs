@@ -100,11 +100,11 @@ impl Shades8 for Recorder<'_> {
             let spans = Spans::of(listed, list, first, &mut offsets);
             for i in 0..spans.count() {
                 self.recorded.push(Recorded {
-                    pick: listed.batches.first + listed.mark(first + i).face(),
+                    pick: listed.batches.first + listed.data().mark(first + i).face(),
                     span: spans.span(i),
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
-                    singles: spans.fits_singles(i).then(|| spans.singles(i)),
+                    singles: spans.singles(i),
                     depth: [spans.depth(i).z, spans.depth(i).dz].map(|z| z >> 8),
                     levels: listed.levels().map_or_else(Vec::new, |(mapping, last)| levels(&spans, i, mapping, last)),
                     single_level: match listed.levels() {

@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::listing::{FaceCorners, ListedFaces, Mark};
+use super::listing::{FaceCorners, ListedFaces, Mark, SpanData};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
@@ -27,6 +27,7 @@ pub(super) const ROOM: usize = PIXELS + LANES;
 /// Spans that pass through the stages together; their pixels are concatenated.
 pub(super) struct Spans<'a> {
     listed: &'a ListedFaces<'a>,
+    data: SpanData<'a>,
     list: &'a SpanList,
     depths: SpanDepths<'a>,
     /// Index of the first in the list.
@@ -98,7 +99,7 @@ impl<'a> Spans<'a> {
         offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
-            end += list.span(k).length + listed.mark(k).skipped();
+            end += list.span(k).length + listed.data().mark(k).skipped();
             if end as usize > PIXELS {
                 break;
             }
@@ -106,13 +107,21 @@ impl<'a> Spans<'a> {
             // No more than the list has.
             offsets[count] = end;
         }
-        Self { listed, list, depths: list.depths(), first, count, pixels: offsets }
+        Self { listed, data: listed.data(), list, depths: list.depths(), first, count, pixels: offsets }
     }
 
     /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
     #[inline]
     pub(super) fn all(listed: &'a ListedFaces<'_>, list: &'a SpanList) -> Self {
-        Self { listed, list, depths: list.depths(), first: 0, count: list.count(), pixels: &NO_OFFSETS }
+        Self {
+            listed,
+            data: listed.data(),
+            list,
+            depths: list.depths(),
+            first: 0,
+            count: list.count(),
+            pixels: &NO_OFFSETS,
+        }
     }
 
     #[inline(always)]
@@ -129,8 +138,8 @@ impl<'a> Spans<'a> {
     /// Span `i` of these.
     #[inline(always)]
     pub(super) fn span(&self, i: usize) -> Span {
-        let mark = self.listed.mark(self.first + i);
-        let (planes, lane) = self.listed.planes(mark.face());
+        let mark = self.data.mark(self.first + i);
+        let (planes, lane) = self.data.planes(mark.face());
         let [column, row] = mark.place();
         let len = (self.list.span(self.first + i).length + mark.skipped()) as usize;
         let first = self.pixels[i] as usize;
@@ -153,7 +162,7 @@ impl<'a> Spans<'a> {
     /// The index after the last span of the face that span `i` belongs to.
     #[inline(always)]
     pub(super) fn end_of_face(&self, i: usize) -> usize {
-        let face = |i: usize| self.listed.mark(self.first + i).face();
+        let face = |i: usize| self.data.mark(self.first + i).face();
         let of = face(i);
         let mut end = i + 1;
         while end < self.count && face(end) == of {
@@ -181,7 +190,7 @@ impl<'a> Spans<'a> {
 
     /// The texture coordinates of the face of span `i`, linear on it, and their levels, by their definitions.
     pub(super) fn exact_texture(&self, i: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
-        self.listed.exact_texture(self.listed.mark(self.first + i).face())
+        self.listed.exact_texture(self.data.mark(self.first + i).face())
     }
 
     /// The first shade of span `i`, with the step in the upper half.
@@ -200,33 +209,33 @@ impl<'a> Spans<'a> {
     /// The start of a value of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
-        self.listed.numbers.of(self.first + i, 2 + value.slot())
+        self.data.value(self.first + i, value.slot())
     }
 
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
-        self.listed.affine(self.first + i)
+        self.data.affine(self.first + i)
     }
 
     /// The level of the face of span `i`, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_level(&self, i: usize) -> AffineLevel {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
         planes.affine.level(lane)
     }
 
     /// The sums along span `i`, where the texture is linear on the face.
     #[inline(always)]
     pub(super) fn sums(&self, i: usize) -> PerspectiveSums<f64> {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        planes.perspective.sums(lane, self.listed.sums(self.first + i))
+        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
+        planes.perspective.sums(lane, self.data.sums(self.first + i))
     }
 
     /// The level of the image in the face of span `i`, whose texture is linear on it, if it has only one.
     #[inline(always)]
     pub(super) fn single_level(&self, i: usize) -> Option<u32> {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
+        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
         planes.perspective.single_level(lane)
     }
 
@@ -234,28 +243,21 @@ impl<'a> Spans<'a> {
     /// estimate decides it.
     #[inline(always)]
     pub(super) fn level(&self, i: usize, k: i32, last: u32) -> Option<u32> {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        planes.perspective.level(lane, self.listed.sums(self.first + i), f64::from(k), last)
+        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
+        planes.perspective.level(lane, self.data.sums(self.first + i), f64::from(k), last)
     }
 
     /// The row's last pixel inside the frame, from the first one of span `i`.
     #[inline(always)]
     pub(super) fn last(&self, i: usize) -> i32 {
-        self.listed.mark(self.first + i).last()
+        self.data.mark(self.first + i).last()
     }
 
-    /// Returns whether the quotients along span `i` may be taken in f32.
+    /// [`sums`](Self::sums) in f32, if the quotients along span `i` may be taken in f32.
     #[inline(always)]
-    pub(super) fn fits_singles(&self, i: usize) -> bool {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        planes.perspective.fits_singles(lane)
-    }
-
-    /// [`sums`](Self::sums) in f32, if quotients [may](Self::fits_singles) be taken in f32.
-    #[inline(always)]
-    pub(super) fn singles(&self, i: usize) -> PerspectiveSums<f32> {
-        let (planes, lane) = self.listed.planes(self.listed.mark(self.first + i).face());
-        planes.perspective.singles(lane, self.listed.sums(self.first + i))
+    pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
+        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
+        planes.perspective.singles(lane, || self.data.sums(self.first + i))
     }
 
     /// Runs one stage: for every face, `plane` sets up its values from its corners, top to bottom;
@@ -296,14 +298,14 @@ impl<'a> Spans<'a> {
     pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
         let span = self.list.span(k);
-        (span.at as usize, span.length as usize, self.listed.mark(k).skipped())
+        (span.at as usize, span.length as usize, self.data.mark(k).skipped())
     }
 
     /// Where the drawn pixels of span `i` are among those of all spans, and the span.
     #[inline(always)]
     pub(super) fn drawn(&self, i: usize) -> (usize, list::Span) {
         let k = self.first + i;
-        ((self.pixels[i] + self.listed.mark(k).skipped()) as usize, self.list.span(k))
+        ((self.pixels[i] + self.data.mark(k).skipped()) as usize, self.list.span(k))
     }
 
     /// The depth of the first drawn pixel of span `i`.

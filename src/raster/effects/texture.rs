@@ -16,8 +16,8 @@ use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, Level, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
-    AffineAlong, LevelTexels, PairValues, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, Texels, Tint,
-    affine_pair, fill_affine, perspective_along, show_pair, singles_along, singles_pair,
+    AffineAlong, LevelTexels, PairValues, PerspectiveSums, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, Texels,
+    Tint, affine_pair, fill_affine, perspective_along, show_pair, singles_along, singles_pair,
 };
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
@@ -223,8 +223,8 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     let mut i = 0;
     while i < spans.count() {
         if let Some(pair) = Pair::of::<T, D>(to, spans, i)
-            && spans.fits_singles(i)
-            && spans.fits_singles(i + 1)
+            && let Some(first) = spans.singles(i)
+            && let Some(second) = spans.singles(i + 1)
         {
             show_two(
                 s,
@@ -233,8 +233,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
                 to,
                 #[inline(always)]
                 || {
-                    let (places, is_unsure) =
-                        singles_pair(s, image, [spans.singles(i), spans.singles(i + 1)], pair.numbers_f32(s));
+                    let (places, is_unsure) = singles_pair(s, image, [first, second], pair.numbers_f32(s));
                     if is_unsure { s.load_i32(&exact_pair((spans, i), image, pair.skipped)) } else { places }
                 },
             );
@@ -277,13 +276,16 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
         let Some(pixels) = to.begin(s, spans, i) else { continue };
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
         // Only the loop with quotients in f32 is inlined, since each loop takes long to compile.
-        if let Some(level) = single.filter(|_| !IS_COMPACT && spans.fits_singles(i)) {
+        if !IS_COMPACT
+            && let Some(level) = single
+            && let Some(sums) = spans.singles(i)
+        {
             if level != image.1 {
                 image = (all[level as usize % LEVELS], level);
                 places = PlaceLanes::of_level(s, image);
             }
             // At most 64.
-            show_in_singles((spans, i, 0), pixels, pixels.skipped as usize, (image, places), tint, to);
+            show_in_singles((spans, i, 0), pixels, pixels.skipped as usize, (image, places, sums), tint, to);
             continue;
         }
         let to = (&mut *to, level);
@@ -352,8 +354,8 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     (to, level): (&mut D, Level),
 ) {
-    if !IS_COMPACT && spans.fits_singles(i) {
-        show_in_singles((spans, i, before), pixels, first, (image, places), tint, to);
+    if !IS_COMPACT && let Some(sums) = spans.singles(i) {
+        show_in_singles((spans, i, before), pixels, first, (image, places, sums), tint, to);
     } else {
         // A closure that moves, so that nothing that the other loops use has to be in memory.
         places.s.apart(
@@ -378,7 +380,7 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
     pixels: DrawnPixels,
     first: usize,
-    (image, places): (LevelTexels<'_>, PlaceLanes<S>),
+    (image, places, sums): (LevelTexels<'_>, PlaceLanes<S>, PerspectiveSums<f32>),
     tint: T,
     to: &mut D,
 ) {
@@ -387,7 +389,7 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
     // At most 64.
     let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
-    let all = singles_along(places, spans.singles(i), first, exact);
+    let all = singles_along(places, sums, first, exact);
     to.show(places.s, (spans, i, before), pixels, (image.0, tint, along), all);
 }
 
