@@ -194,21 +194,15 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
 #[inline(always)]
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     (spans, i): (&Spans<'_>, usize),
-    [mut from, [du, dv]]: [[u32; 2]; 2],
+    line: [[u32; 2]; 2],
     (image, places): (Texels<'_>, PlaceLanes<S>),
     tint: T,
     to: &mut D,
 ) {
     let s = places.s;
     let Some(pixels) = to.begin(s, spans, i) else { return };
-    let skipped = pixels.skipped;
-    if skipped > 0 {
-        // At most 63; the sums are modulo 2³².
-        from[0] = from[0].wrapping_add(du.wrapping_mul(skipped));
-        from[1] = from[1].wrapping_add(dv.wrapping_mul(skipped));
-    }
-    let along = &mut tint.begin(s, spans.values::<T>(i, skipped));
-    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(places, image, [from, [du, dv]]));
+    let along = &mut tint.begin(s, spans.values::<T>(i, pixels.skipped));
+    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(places, image, line, pixels.skipped));
 }
 
 #[inline(always)]

@@ -255,15 +255,20 @@ pub(crate) struct AffineAlong<S: Lanes8> {
 impl<S: Lanes8> AffineAlong<S> {
     /// The texels from (`u`, `v`) on, with the change per pixel.
     #[inline(always)]
-    pub(crate) fn new(places: PlaceLanes<S>, texels: Texels<'_>, [[u, v], [du, dv]]: [[u32; 2]; 2]) -> Self {
+    pub(crate) fn new(
+        places: PlaceLanes<S>,
+        texels: Texels<'_>,
+        [[u, v], [du, dv]]: [[u32; 2]; 2],
+        skipped: u32,
+    ) -> Self {
         let s = places.s;
-        let along = |first: u32, step: u32| {
-            let (first, step) = (first.cast_signed(), step.cast_signed());
-            let at = s.add_i32(s.splat_i32(first), s.mul_i32(s.splat_i32(step), s.load_i32(&NUMBERS)));
-            (at, s.splat_i32(step.wrapping_mul(LANES as i32)))
-        };
-        let (u, du) = along(u, du);
-        let (v, dv) = along(v << texels.ubits, dv << texels.ubits);
+        // At most 63; the sums are modulo 2³².
+        let numbers = s.add_i32(s.load_i32(&NUMBERS), s.splat_i32(skipped.cast_signed()));
+        let along = |first: S::I32, step: S::I32| (s.add_i32(first, s.mul_i32(step, numbers)), s.shl_i32(step, 3));
+        let splat = |value: u32| s.splat_i32(value.cast_signed());
+        let (u, du) = along(splat(u), splat(du));
+        let bits = texels.ubits.cast_signed();
+        let (v, dv) = along(s.shl_i32(splat(v), bits), s.shl_i32(splat(dv), bits));
         Self { places, at: [u, v], step: [du, dv] }
     }
 }
