@@ -47,6 +47,8 @@ pub(crate) struct SpanList {
     pub(crate) pitch: i32,
     /// Cells from one row to the next.
     pub(crate) width: i32,
+    /// True if that is the same for both, so that pixels and their cells have the same offset.
+    cells_are_pixels: bool,
     /// Pixels of all spans so far, as eight partial sums.
     covered: [i32; LANES],
     /// Spans that have been drawn.
@@ -138,6 +140,7 @@ impl SpanList {
             cells: 0,
             pitch: 0,
             width: 0,
+            cells_are_pixels: true,
             covered: [0; LANES],
             drawn: 0,
             nearer: 0,
@@ -159,6 +162,7 @@ impl SpanList {
         let most = |length: usize| length.min(i32::MAX as usize) as i32;
         (self.pixels, self.pitch) = (most(pixels), pitch as i32);
         (self.cells, self.width) = (most(cells), width as i32);
+        self.cells_are_pixels = pitch == width;
         (self.count, self.covered, self.drawn, self.nearer) = (0, [0; LANES], 0, 0);
     }
 
@@ -177,7 +181,7 @@ impl SpanList {
     /// offset.
     #[inline(always)]
     fn cells_are_pixels(&self) -> bool {
-        self.pitch == self.width
+        self.cells_are_pixels
     }
 
     /// The mask of those of these eight spans that have a length and lie inside.
