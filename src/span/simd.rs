@@ -292,42 +292,52 @@ pub(crate) mod avx2 {
     pub(crate) fn fill_spans(_: Avx2, pixels: &mut [u8], spans: &SpanList) {
         #[target_feature(enable = "avx2")]
         fn each(pixels: &mut [u8], spans: &SpanList) {
-            for Span { at, length, paint } in spans.spans() {
-                span(pixels, at, length, paint);
+            for k in 0..spans.count() {
+                span(pixels, spans, k);
             }
         }
         // SAFETY: the token proves that the processor has AVX2.
         unsafe { each(pixels, spans) }
     }
 
-    /// Fills a span at `at`. `paint` has its shade, with the step in the upper half. Bytes after a span of up to 32
-    /// pixels, of whichever row, are rewritten unchanged. A span that reaches beyond `pixels` is not drawn.
+    /// Fills span `k` of a list. Bytes after a span of up to 32 pixels, of whichever row, are rewritten unchanged. A span
+    /// that reaches beyond `pixels` is not drawn.
     #[inline]
     #[target_feature(enable = "avx2")]
-    fn span(pixels: &mut [u8], at: u32, length: u32, paint: u32) {
+    fn span(pixels: &mut [u8], spans: &SpanList, k: usize) {
         static MASK: [[u8; 32]; 2] = [[0; 32], [u8::MAX; 32]];
-        let (shade, step) = (paint as u16, (paint >> 16) as u16);
+        let Span { at, length, .. } = spans.span(k);
         // No overflow: both are below 2³², and usize has 64 bits.
         let (at, n) = (at as usize, length as usize);
-        // The mask of the bytes that stay, 32 or the first 16 of these: it starts at byte 32 or an earlier one.
+        // The mask of the bytes that stay, 32 or the first of these: it starts at byte 32 or an earlier one.
         let stays = MASK.as_ptr().cast::<u8>().wrapping_add(32_usize.wrapping_sub(n));
+        if n <= 8
+            && let Some(row) = pixels.get_mut(at..at + 8)
+        {
+            // shade + k·step, of which bits 8 to 15 count. Read after the check, so that it is broadcast from memory.
+            let paint = _mm256_set1_epi32(spans.span(k).paint.cast_signed());
+            let numbered = _mm256_setr_epi32(1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001);
+            let shades = _mm256_srli_epi32(_mm256_madd_epi16(paint, numbered), 8);
+            let fours = _mm256_shuffle_epi8(shades, _mm256_set1_epi32(0x0C08_0400));
+            let bytes = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256(fours, 1));
+            // SAFETY: eight of 64 bytes, and the eight of the row. No load or store requires alignment.
+            unsafe {
+                let (stays, before) = (_mm_loadl_epi64(stays.cast()), _mm_loadl_epi64(row.as_ptr().cast()));
+                _mm_storel_epi64(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays));
+            }
+            return;
+        }
+        let paint = spans.span(k).paint;
+        let (shade, step) = (paint as u16, (paint >> 16) as u16);
         if n <= 16
             && let Some(row) = pixels.get_mut(at..at + 16)
         {
             let bytes = sse2::Block::new(shade, step).bytes();
-            // SAFETY: sixteen of 64 bytes; the load requires no alignment.
-            let stays = unsafe { _mm_loadu_si128(stays.cast()) };
-            if n <= 8 {
-                // SAFETY: sixteen bytes, of which eight are read; the load requires no alignment.
-                let before = unsafe { _mm_loadl_epi64(row.as_ptr().cast()) };
-                // SAFETY: sixteen bytes, of which eight are written; the store requires no alignment.
-                unsafe { _mm_storel_epi64(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
-                return;
+            // SAFETY: sixteen of 64 bytes, and the sixteen of the row. No load or store requires alignment.
+            unsafe {
+                let (stays, before) = (_mm_loadu_si128(stays.cast()), _mm_loadu_si128(row.as_ptr().cast()));
+                _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays));
             }
-            // SAFETY: sixteen bytes; the load requires no alignment.
-            let before = unsafe { _mm_loadu_si128(row.as_ptr().cast()) };
-            // SAFETY: sixteen bytes; the store requires no alignment.
-            unsafe { _mm_storeu_si128(row.as_mut_ptr().cast(), _mm_blendv_epi8(bytes, before, stays)) };
             return;
         }
         if n <= 32
