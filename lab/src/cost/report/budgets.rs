@@ -3,9 +3,11 @@
 use maud::{Markup, html};
 
 use super::figures::{DASH, asked, count, name_of, percent, ratio, shades, time};
-use super::table::{Cell, Column, Table, interval, quartiles};
+use super::table::{self, Table, interval, quartiles};
 use crate::cost::{BudgetRow, Study};
 use mode13h::plan::FaceShading;
+
+type Column = table::Column<BudgetRow>;
 
 /// The tables and the chart, for the page.
 pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
@@ -28,47 +30,33 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
 /// The table of each budget's errors and times.
 pub(super) fn table(study: &Study) -> Table {
     let columns = [
-        Column::text("budget, shades").brief(),
-        Column::number("within it").brief(),
-        Column::number("not compared").brief(),
-        Column::number("largest error").brief(),
-        Column::number("r.m.s."),
-        Column::number("largest patch beyond, pixels"),
-        Column::number("swim").brief(),
-        Column::number("a frame").brief(),
-        Column::number("quartiles"),
-        Column::text("best single shading").brief(),
-        Column::number("its time").brief(),
-        Column::number("ratio").brief(),
-        Column::number("95 % interval"),
-        Column::text("verdict").brief(),
+        Column::text("budget, shades", |row| asked(row.max_error)).brief(),
+        Column::number("within it", |row| percent(row.within)).brief(),
+        Column::number("not compared", |row| percent(row.not_compared)).brief(),
+        Column::number("largest error", |row| shades(row.largest)).brief(),
+        Column::number("r.m.s.", |row| shades(row.rms)),
+        Column::number("largest patch beyond, pixels", |row| count(row.patch)),
+        Column::number("swim", |row| shades(row.swim)).brief(),
+        Column::number("a frame", |row| time(row.per_frame.median)).brief(),
+        Column::number("quartiles", |row| quartiles(&row.per_frame)),
+        Column::text("best single shading", |row| row.best_single_shading.map_or("none keeps it".into(), name_of))
+            .brief(),
+        Column::number("its time", |row| row.best_single.map_or(DASH.into(), |best| time(best.median))).brief(),
+        Column::number("ratio", |row| row.ratio.map_or(DASH.into(), |(times, _)| ratio(times))).brief(),
+        Column::number("95 % interval", |row| row.ratio.map_or(DASH.into(), |(_, between)| interval(between))),
+        Column::text("verdict", BudgetRow::verdict).brief(),
     ];
-    let row = |row: &BudgetRow| -> Vec<Cell> {
-        vec![
-            asked(row.max_error).into(),
-            percent(row.within).into(),
-            percent(row.not_compared).into(),
-            shades(row.largest).into(),
-            shades(row.rms).into(),
-            count(row.patch).into(),
-            shades(row.swim).into(),
-            time(row.per_frame.median).into(),
-            quartiles(&row.per_frame),
-            row.best_single_shading.map_or("none keeps it".to_string(), name_of).into(),
-            row.best_single.map_or(DASH.to_string(), |best| time(best.median)).into(),
-            row.ratio.map_or(DASH.to_string(), |(times, _)| ratio(times)).into(),
-            row.ratio.map_or(DASH.into(), |(_, between)| interval(between)),
-            row.verdict().into(),
-        ]
-    };
-    Table::new(&columns, study.budget.iter().map(row).collect())
+    Table::new(columns, &study.budget)
 }
 
 /// The table of how many triangles each shading drew.
 fn shares(study: &Study) -> Table {
-    let columns = [Column::text("budget, shades"), Column::text("triangles of all frames")];
-    let rows = study.budget.iter().filter(|row| !row.triangles.is_empty());
-    Table::new(&columns, rows.map(|row| vec![asked(row.max_error).into(), shared_out(row).into()]).collect())
+    let columns = [
+        Column::text("budget, shades", |row| asked(row.max_error)),
+        Column::text("triangles of all frames", shared_out),
+    ];
+    let rows: Vec<BudgetRow> = study.budget.iter().filter(|row| !row.triangles.is_empty()).cloned().collect();
+    Table::new(columns, &rows)
 }
 
 fn shared_out(row: &BudgetRow) -> String {

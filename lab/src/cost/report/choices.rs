@@ -4,8 +4,8 @@ use maud::{Markup, html};
 
 use super::figures::{count, ratio, time};
 use super::shadings::figures;
-use super::table::{Cell, Column, Table, interval, quartiles};
-use crate::cost::{Claim, Study};
+use super::table::{self, Table, interval, quartiles};
+use crate::cost::{Claim, OptionRow, Study};
 
 /// The choices, grouped by aspect, for the page.
 pub(super) fn options(study: &Study) -> Markup {
@@ -20,36 +20,20 @@ pub(super) fn options(study: &Study) -> Markup {
 
 /// The choices.
 pub(super) fn table(study: &Study) -> Table {
-    let columns = [
-        Column::text("aspect").brief(),
-        Column::text("choice").brief(),
-        Column::number("a frame").brief(),
-        Column::number("quartiles"),
-        Column::number("ratio").brief(),
-        Column::number("95 % interval").brief(),
-        Column::number("largest error").brief(),
-        Column::number("mean"),
-        Column::number("r.m.s.").brief(),
-        Column::number("r.m.s. of 4 × 4"),
-        Column::number("off by ≥ 1"),
-        Column::number("cover errors, pixels").brief(),
+    type Column = table::Column<(bool, OptionRow)>;
+    let mut columns = vec![
+        Column::text("aspect", |(is_first, row)| if *is_first { row.aspect.name() } else { "" }).brief(),
+        Column::text("choice", |(_, row)| row.name.clone()).brief(),
+        Column::number("a frame", |(_, row)| time(row.per_frame.median)).brief(),
+        Column::number("quartiles", |(_, row)| quartiles(&row.per_frame)),
+        Column::number("ratio", |(_, row)| ratio(row.ratio.0)).brief(),
+        Column::number("95 % interval", |(_, row)| interval(row.ratio.1)).brief(),
     ];
-    let mut rows = Vec::new();
-    for (i, row) in study.options.iter().enumerate() {
-        let is_first = i == 0 || study.options[i - 1].aspect != row.aspect;
-        let mut cells: Vec<Cell> = vec![
-            (if is_first { row.aspect.name() } else { "" }).into(),
-            row.name.as_str().into(),
-            time(row.per_frame.median).into(),
-            quartiles(&row.per_frame),
-            ratio(row.ratio.0).into(),
-            interval(row.ratio.1),
-        ];
-        cells.extend(figures(&row.error));
-        cells.push(count(row.cover_errors).into());
-        rows.push(cells);
-    }
-    Table::new(&columns, rows)
+    columns.extend(figures("largest error", |(_, row): &(_, OptionRow)| row.error));
+    columns.push(Column::number("cover errors, pixels", |(_, row)| count(row.cover_errors)).brief());
+    let by_aspect = study.options.chunk_by(|a, b| a.aspect == b.aspect);
+    let rows = by_aspect.flat_map(|rows| (0..).zip(rows).map(|(i, row)| (i == 0, row.clone())));
+    Table::new(columns, &rows.collect::<Vec<_>>())
 }
 
 /// The claims, each with what was measured, for the page.

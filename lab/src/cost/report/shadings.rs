@@ -4,10 +4,12 @@ use maud::{Markup, html};
 
 use super::figures::{at_most, count, list, name_of, percent, ratio, shades, three_digits, time};
 use super::pictures;
-use super::table::{Cell, Column, Table, interval, quartiles};
+use super::table::{self, Cell, Table, interval, quartiles};
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN};
 use crate::cost::{Errors, ShadingRow, Split, Study, ties};
 use mode13h::settings::Shading;
+
+type Column = table::Column<ShadingRow>;
 
 /// A part of a frame's time: its name, its CSS class, and the field it shows.
 type Part = (&'static str, &'static str, fn(&Split) -> f64);
@@ -43,30 +45,17 @@ pub(super) fn tables(study: &Study) -> Markup {
 /// The times.
 pub(super) fn times(study: &Study) -> Table {
     let columns = [
-        Column::text("shading").brief(),
-        Column::number("a frame").brief(),
-        Column::number("quartiles"),
-        Column::number("a pixel"),
-        Column::number("a triangle"),
-        Column::number("ratio to gouraud-8.8").brief(),
-        Column::number("95 % interval").brief(),
-        Column::number("instructions a frame").brief(),
-        Column::text("where it goes"),
+        Column::text("shading", |row| name(row, true)).brief(),
+        Column::number("a frame", |row| time(row.per_frame.median)).brief(),
+        Column::number("quartiles", |row| quartiles(&row.per_frame)),
+        Column::number("a pixel", |row| format!("{} ns", three_digits(row.per_pixel))),
+        Column::number("a triangle", |row| time(row.per_triangle)),
+        Column::number("ratio to gouraud-8.8", |row| ratio(row.ratio)).brief(),
+        Column::number("95 % interval", |row| interval(row.ratio_interval)).brief(),
+        Column::number("instructions a frame", |row| row.instructions.map_or(String::new(), count)).brief(),
+        Column::text("where it goes", |row| bar(&row.split)),
     ];
-    let row = |row: &ShadingRow| -> Vec<Cell> {
-        vec![
-            name(row, true),
-            time(row.per_frame.median).into(),
-            quartiles(&row.per_frame),
-            format!("{} ns", three_digits(row.per_pixel)).into(),
-            time(row.per_triangle).into(),
-            ratio(row.ratio).into(),
-            interval(row.ratio_interval),
-            row.instructions.map_or(String::new(), count).into(),
-            bar(&row.split),
-        ]
-    };
-    Table::new(&columns, study.shadings.iter().map(row).collect())
+    Table::new(columns, &study.shadings)
         .note("★ efficient: no shading is as near to lit (root mean square) and faster, as far as the times show.")
 }
 
@@ -121,34 +110,17 @@ fn ties_list(study: &Study) -> Markup {
 
 /// The errors.
 pub(super) fn errors(study: &Study) -> Table {
-    let of = |group| {
-        [
-            Column::number("largest").brief(),
-            Column::number("mean"),
-            Column::number("r.m.s.").brief(),
-            Column::number("r.m.s. of 4 × 4"),
-            Column::number("off by ≥ 1"),
-        ]
-        .map(|column: Column| column.under(group))
-    };
-    let mut columns = vec![Column::text("shading").brief()];
-    columns.extend(of("against gouraud"));
-    columns.extend(of("against lit"));
+    let mut columns = vec![Column::text("shading", |row| name(row, false)).brief()];
+    let gouraud = figures("largest", |row: &ShadingRow| row.error_gouraud);
+    columns.extend(gouraud.map(|column| column.under("against gouraud")));
+    columns.extend(figures("largest", |row: &ShadingRow| row.error_lit).map(|column| column.under("against lit")));
     columns.extend([
-        Column::number("palette adds"),
-        Column::number("swim").brief(),
-        Column::number("cover errors").brief(),
-        Column::number("not compared").brief(),
+        Column::number("palette adds", |row| shades(row.error_palette)),
+        Column::number("swim", |row| shades(row.swim)).brief(),
+        Column::number("cover errors", |row| count(row.cover_errors)).brief(),
+        Column::number("not compared", |row| percent(row.not_compared)).brief(),
     ]);
-    let row = |row: &ShadingRow| {
-        let mut cells = vec![name(row, false)];
-        cells.extend(figures(&row.error_gouraud));
-        cells.extend(figures(&row.error_lit));
-        let rest = [shades(row.error_palette), shades(row.swim), count(row.cover_errors), percent(row.not_compared)];
-        cells.extend(rest.map(Cell::from));
-        cells
-    };
-    Table::new(&columns, study.shadings.iter().map(row).collect())
+    Table::new(columns, &study.shadings)
         .note("Against gouraud: what the arithmetic is off by. Against lit: what the technique is off by.")
         .note("½ is the best that rounding to 256 steps can do.")
         .page_note("R.m.s. of 4 × 4: of the means over blocks, where dither earns its keep.")
@@ -158,10 +130,16 @@ pub(super) fn errors(study: &Study) -> Table {
         .note("Not compared: the share of covered pixels that show another face than lit does; no error is taken there.")
 }
 
-/// The figures of a set of errors, each in a cell.
-pub(super) fn figures(errors: &Errors) -> [Cell; 5] {
-    let Errors { max, mean, rms, off_by_one, rms_of_blocks } = *errors;
-    [shades(max), shades(mean), shades(rms), shades(rms_of_blocks), percent(off_by_one)].map(Cell::from)
+/// The columns of a row's errors; `largest` is the heading of the first.
+pub(super) fn figures<Row: 'static>(largest: &'static str, of: fn(&Row) -> Errors) -> [table::Column<Row>; 5] {
+    type Column<Row> = table::Column<Row>;
+    [
+        Column::number(largest, move |row| shades(of(row).max)).brief(),
+        Column::number("mean", move |row| shades(of(row).mean)),
+        Column::number("r.m.s.", move |row| shades(of(row).rms)).brief(),
+        Column::number("r.m.s. of 4 × 4", move |row| shades(of(row).rms_of_blocks)),
+        Column::number("off by ≥ 1", move |row| percent(of(row).off_by_one)),
+    ]
 }
 
 /// Every shading's frame, and its error map under it.

@@ -5,9 +5,9 @@ use maud::{Markup, html};
 use super::figures::{DASH, ratio, time};
 use crate::cost::Nanoseconds;
 
-/// A column: its heading, and where it is shown.
+/// A column's heading, and where it is shown.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column {
+struct Heading {
     head: &'static str,
     /// A heading shared with neighbouring columns.
     group: &'static str,
@@ -15,25 +15,36 @@ pub(super) struct Column {
     is_brief: bool,
 }
 
-impl Column {
+/// A column: its heading, and what it shows of a row.
+pub(super) struct Column<Row> {
+    heading: Heading,
+    cell: Box<dyn Fn(&Row) -> Cell>,
+}
+
+impl<Row> Column<Row> {
     /// A column of numbers, on the page.
-    pub(super) const fn number(head: &'static str) -> Self {
-        Self { head, group: "", is_text: false, is_brief: false }
+    pub(super) fn number<C: Into<Cell>>(head: &'static str, cell: impl Fn(&Row) -> C + 'static) -> Self {
+        let heading = Heading { head, group: "", is_text: false, is_brief: false };
+        Self { heading, cell: Box::new(move |row| cell(row).into()) }
     }
 
     /// A column of words, on the page.
-    pub(super) const fn text(head: &'static str) -> Self {
-        Self { is_text: true, ..Self::number(head) }
+    pub(super) fn text<C: Into<Cell>>(head: &'static str, cell: impl Fn(&Row) -> C + 'static) -> Self {
+        let mut column = Self::number(head, cell);
+        column.heading.is_text = true;
+        column
     }
 
     /// Shows the column in a terminal, too.
-    pub(super) const fn brief(self) -> Self {
-        Self { is_brief: true, ..self }
+    pub(super) fn brief(mut self) -> Self {
+        self.heading.is_brief = true;
+        self
     }
 
     /// Puts the column under a heading shared with its neighbours.
-    pub(super) const fn under(self, group: &'static str) -> Self {
-        Self { group, ..self }
+    pub(super) fn under(mut self, group: &'static str) -> Self {
+        self.heading.group = group;
+        self
     }
 }
 
@@ -64,29 +75,20 @@ impl<T: Into<String>> From<T> for Cell {
 /// A table. Empty columns are left out, and so is a table without rows.
 #[derive(Debug)]
 pub(super) struct Table {
-    columns: Vec<Column>,
+    columns: Vec<Heading>,
     rows: Vec<Vec<Cell>>,
     /// Notes on a heading or on the whole table, and whether a terminal shows them too.
     notes: Vec<(&'static str, bool)>,
 }
 
 impl Table {
-    /// A table whose rows have one cell for each column.
-    pub(super) fn new(columns: &[Column], mut rows: Vec<Vec<Cell>>) -> Self {
-        let is_kept = |column: usize| rows.iter().any(|row| !row[column].is_empty());
-        let kept: Vec<bool> = (0..columns.len()).map(is_kept).collect();
-        let mut columns = columns.to_vec();
-        let keep = |i: &mut usize| {
-            *i += 1;
-            kept[*i - 1]
-        };
-        let mut i = 0;
-        columns.retain(|_| keep(&mut i));
-        for row in &mut rows {
-            let mut i = 0;
-            row.retain(|_| keep(&mut i));
-        }
-        Self { columns, rows, notes: Vec::new() }
+    /// A table of these rows.
+    pub(super) fn new<Row>(columns: impl IntoIterator<Item = Column<Row>>, rows: &[Row]) -> Self {
+        let mut columns: Vec<Column<Row>> = columns.into_iter().collect();
+        columns.retain(|column| rows.iter().any(|row| !(column.cell)(row).is_empty()));
+        let cells = |row: &Row| columns.iter().map(|column| (column.cell)(row)).collect();
+        let rows = rows.iter().map(cells).collect();
+        Self { columns: columns.iter().map(|column| column.heading).collect(), rows, notes: Vec::new() }
     }
 
     /// Adds a note below the table.
@@ -205,11 +207,14 @@ fn soft(text: String) -> Cell {
 mod tests {
     use super::*;
 
-    fn table(rows: &[[&str; 3]]) -> Table {
-        let columns =
-            [Column::text("way").brief(), Column::number("time").brief().under("all"), Column::number("more")];
-        let rows = rows.iter().map(|row| row.map(Cell::from).to_vec()).collect();
-        Table::new(&columns, rows).note("A note.").page_note("Of more.")
+    fn table(rows: &[[&'static str; 3]]) -> Table {
+        type Column = super::Column<[&'static str; 3]>;
+        let columns = [
+            Column::text("way", |row| row[0]).brief(),
+            Column::number("time", |row| row[1]).brief().under("all"),
+            Column::number("more", |row| row[2]),
+        ];
+        Table::new(columns, rows).note("A note.").page_note("Of more.")
     }
 
     #[test]

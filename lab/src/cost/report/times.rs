@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use super::figures::{asked, count, percent, shades, time};
-use super::table::{Column, Table};
+use super::table::{self, Table};
 use crate::cost::{Study, TimeRow};
 
 /// The table and its chart, for the page.
@@ -23,30 +23,16 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
 
 /// The table of results for each time.
 pub(super) fn table(study: &Study) -> Table {
+    type Column = table::Column<TimeRow>;
     let columns = [
-        Column::text("time given").brief(),
-        Column::number("a frame took").brief(),
-        Column::number("frames").brief(),
-        Column::number("within 1.05 times it").brief(),
-        Column::number("accepted error, mean").brief(),
-        Column::number("greatest").brief(),
-        Column::number("least budget that fits").brief(),
-        Column::number("largest error").brief(),
+        Column::text("time given", |row| time(row.max_time)).brief(),
+        Column::number("a frame took", |row| time(row.mean_time)).brief(),
+        Column::number("frames", |row| count(row.frames)).brief(),
+        Column::number("within 1.05 times it", |row| percent(row.within)).brief(),
+        Column::number("accepted error, mean", |row| shades(row.mean_error)).brief(),
+        Column::number("greatest", |row| shades(row.max_error)).brief(),
+        Column::number("least budget that fits", |row| row.least_that_fits.map_or("none".into(), asked)).brief(),
+        Column::number("largest error", |row| shades(row.largest)).brief(),
     ];
-    let row = |row: &TimeRow| {
-        let fits = row.least_that_fits.map_or("none".to_string(), asked);
-        let cells = [
-            time(row.max_time),
-            time(row.mean_time),
-            count(row.frames),
-            percent(row.within),
-            shades(row.mean_error),
-            shades(row.max_error),
-            fits,
-            shades(row.largest),
-        ];
-        cells.map(Into::into).to_vec()
-    };
-    Table::new(&columns, study.times.iter().map(row).collect())
-        .note("Least budget that fits: judging by the times of the budgets above.")
+    Table::new(columns, &study.times).note("Least budget that fits: judging by the times of the budgets above.")
 }
