@@ -5,7 +5,7 @@ mod shapes;
 
 use std::fmt::Display;
 
-use crate::support::triangles::{triangle, vertex};
+use crate::support::triangles::{rect, triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::internals::raster::effects::{Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource};
@@ -221,15 +221,8 @@ fn batches_draw_what_single_triangles_do() {
     let mut total = DrawStats::default();
     for round in 0..600 {
         let (width, height) = random.one_of(&[(320, 200), (97, 40), (9, 300), (1, 1), (700, 3)]);
-        let mut some_rect = |most_x: i64, most_y: i64| {
-            let mut side = |most| {
-                let (a, b) = (random.within(0, most) as u32, random.within(0, most) as u32);
-                (a.min(b), a.max(b))
-            };
-            let ((x0, x1), (y0, y1)) = (side(most_x), side(most_y));
-            Rect { x0, y0, x1, y1 }
-        };
-        let (clip, band) = (some_rect(width, height), some_rect(1, height - 1));
+        let clip = rect(&mut random, width as u32, height as u32);
+        let band = rect(&mut random, 1, height as u32 - 1);
         let place = Place {
             clip: (round % 3 == 0).then_some(clip),
             band: if round % 4 == 0 { band.y0..band.y1 + 1 } else { 0..height as u32 },

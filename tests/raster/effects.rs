@@ -101,6 +101,34 @@ impl Stock {
     }
 }
 
+/// An image, with smaller copies if there are `levels`, of as many texels as these bits say.
+fn texture<'a>(
+    texels: &'a [u8],
+    levels: Option<&'a [u8]>,
+    (ubits, vbits): (u32, u32),
+    mapping: Mapping,
+    tables: [&'a [u8; 65_536]; 3],
+) -> TextureStage<'a> {
+    let levels = levels.map(|levels| &levels[..Levels::length(ubits, vbits)]);
+    TextureStage {
+        texels: Texels::new(&texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
+        levels: levels.map(|levels| Levels::new(levels, ubits, vbits).expect("as many texels")),
+        mapping,
+        tables,
+    }
+}
+
+/// The texels of all levels from 1 on, each the number of its level.
+fn level_numbers(ubits: u32, vbits: u32) -> Vec<u8> {
+    let texels = |level: u32| 1 << (ubits.saturating_sub(level) + vbits.saturating_sub(level));
+    (1..=8_u8).flat_map(|level| vec![level; texels(level.into())]).collect()
+}
+
+/// A table that shows texels as they are.
+fn texels_alone() -> Box<[u8; 65_536]> {
+    (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB")
+}
+
 /// Light that is exact in f64: the sum of the first three values, clamped to the range.
 #[derive(Debug)]
 struct Sum;
@@ -156,7 +184,7 @@ fn limits(random: &mut Random) -> Limits {
 
 fn look<'a>(random: &mut Random, stock: &'a Stock) -> PixelPipeline<'a> {
     let mut maybe = |n: i64| random.within(0, n) == 0;
-    let (channels, dither, texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
+    let (channels, dither, has_texture, fog, blend) = (maybe(3), maybe(2), maybe(1), maybe(2), maybe(3));
     let (ubits, vbits) = (random.within(0, 8) as u32, random.within(0, 8) as u32);
     PixelPipeline {
         source: match random.within(0, 10) {
@@ -172,14 +200,11 @@ fn look<'a>(random: &mut Random, stock: &'a Stock) -> PixelPipeline<'a> {
             _ => Mix::Nearest { map: &stock.map, spread: random.within(0, 255) as u8 },
         }),
         dither: dither.then(|| random.one_of(&DitherPattern::ALL).thresholds()),
-        texture: texture.then(|| TextureStage {
-            texels: Texels::new(&stock.texels[..1 << (ubits + vbits)], ubits, vbits).expect("as many texels"),
-            levels: (random.within(0, 1) == 0).then(|| {
-                let levels = &stock.levels[..Levels::length(ubits, vbits)];
-                Levels::new(levels, ubits, vbits).expect("as many texels")
-            }),
-            mapping: random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]),
-            tables: [&stock.tables[1], &stock.tables[2], &stock.tables[3]],
+        texture: has_texture.then(|| {
+            let levels = (random.within(0, 1) == 0).then_some(&stock.levels[..]);
+            let mapping = random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]);
+            let tables = [1, 2, 3].map(|i| &*stock.tables[i]);
+            texture(&stock.texels, levels, (ubits, vbits), mapping, tables)
         }),
         fog: fog.then_some(&stock.tables[4]),
         blend: blend.then_some(&stock.tables[5]),
@@ -223,6 +248,10 @@ impl<'a> Naive<'a> {
         let step = oracle::per_pixel(self.corners, values);
         let start = if step.n < 0 { exact.ceil() } else { exact.floor() };
         start + step.truncate() * i128::from(x - seed)
+    }
+
+    fn has_area(&self) -> bool {
+        oracle::edge(self.corners[0], self.corners[1], self.corners[2]) != 0
     }
 
     fn depths(&self) -> [i128; 3] {
@@ -458,6 +487,35 @@ fn draw(
     pixels
 }
 
+/// Draws with the raster in two bands, of which the second begins in row `cut`.
+fn draw_in_bands(
+    size: Size,
+    vertices: &[Vertex; 3],
+    attributes: &[Attributes; 3],
+    look: &PixelPipeline<'_>,
+    cut: u32,
+) -> Vec<u8> {
+    let mut pixels = size.pixels();
+    for rows in [0..cut, cut..size.height as u32] {
+        size.draw(&mut pixels, rows, |frame| Raster::new(frame).triangle_with_effects(vertices, attributes, look));
+    }
+    pixels
+}
+
+/// Draws into the whole frame with a depth buffer.
+fn draw_deep<D: Cell>(
+    size: Size,
+    depths: &mut [D],
+    draw: impl FnOnce(Raster<'_, D>) -> DrawStats,
+) -> (Vec<u8>, DrawStats) {
+    let mut pixels = size.pixels();
+    let drawn = size.draw(&mut pixels, size.rows(), |frame| {
+        let buffer = DepthBuffer::new(depths, &frame).expect("long enough");
+        draw(Raster::new(frame).with_depth(buffer))
+    });
+    (pixels, drawn)
+}
+
 /// Draws with every kernel, all of which must agree.
 fn draw_by_all(vertices: &[Vertex; 3], attributes: &[Attributes; 3], look: &PixelPipeline<'_>) -> Vec<u8> {
     let bytes = draw(SIZE, vertices, attributes, look, None, Kernel::PORTABLE);
@@ -486,7 +544,7 @@ fn triangles_with_effects_are_the_oracles() {
         let attributes = attributes(&mut random);
         let look = look(&mut random, &stock);
         let naive = Naive::new(size, &vertices, &attributes, &look);
-        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+        if !naive.has_area() {
             let bytes = draw(size, &vertices, &attributes, &look, None, kernels[0]);
             assert!(bytes.iter().all(|byte| *byte == BEFORE));
             continue;
@@ -520,12 +578,7 @@ fn triangles_with_effects_are_the_oracles() {
         }
         // R9: bands change nothing.
         let cut = random.within(1, i64::from(height) - 1) as u32;
-        let mut banded = size.pixels();
-        for rows in [0..cut, cut..height as u32] {
-            size.draw(&mut banded, rows, |frame| {
-                Raster::new(frame).triangle_with_effects(&vertices, &attributes, &look)
-            });
-        }
+        let banded = draw_in_bands(size, &vertices, &attributes, &look, cut);
         assert_eq!(banded, bytes, "bands from row {cut} of {size:?}: {vertices:?}, {attributes:?}, {look:?}");
     }
     assert!(pixels > 300_000, "{pixels} pixels were compared");
@@ -562,21 +615,15 @@ fn texels_at_their_borders_are_the_oracles() {
             }
         }
         let bits = random.within(0, 8) as u32;
+        let levels = (random.within(0, 1) == 0).then_some(&stock.texels[..]);
+        let mapping = random.one_of(&[Mapping::Perspective, Mapping::Perspective, Mapping::Affine]);
         let look = PixelPipeline {
             source: ShadeSource::Shaded(Interpolation::GouraudReseeded),
-            texture: Some(TextureStage {
-                texels: Texels::new(&stock.texels[..256 << bits], bits, 8).expect("as many texels"),
-                levels: (random.within(0, 1) == 0).then(|| {
-                    let texels = &stock.texels[..Levels::length(bits, 8)];
-                    Levels::new(texels, bits, 8).expect("as many texels")
-                }),
-                mapping: random.one_of(&[Mapping::Perspective, Mapping::Perspective, Mapping::Affine]),
-                tables: [&stock.tables[0]; 3],
-            }),
+            texture: Some(texture(&stock.texels, levels, (bits, 8), mapping, [&stock.tables[0]; 3])),
             ..PixelPipeline::PLAIN
         };
         let naive = Naive::new(SIZE, &vertices, &attributes, &look);
-        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+        if !naive.has_area() {
             continue;
         }
         let (expected, rows) = naive.frame();
@@ -608,14 +655,8 @@ fn without_effects_faces_are_plain_triangles() {
         exact.push(Interpolation::Flat(random.within(0, 255) as u8));
         let interpolation = random.one_of(&exact);
         let kernel = random.one_of(&kernels);
-        let clip = (random.within(0, 2) == 0).then(|| {
-            let side = |random: &mut Random, end: i32| {
-                let (a, b) = (random.within(0, end.into()) as u32, random.within(0, end.into()) as u32);
-                (a.min(b), a.max(b))
-            };
-            let ((x0, x1), (y0, y1)) = (side(&mut random, size.width), side(&mut random, size.height));
-            Rect { x0, y0, x1, y1 }
-        });
+        let clip =
+            (random.within(0, 2) == 0).then(|| triangles::rect(&mut random, size.width as u32, size.height as u32));
         let mut plain = size.pixels();
         let mut drawn = DrawStats::default();
         size.draw(&mut plain, size.rows(), |frame| {
@@ -674,11 +715,9 @@ fn effects_keep_to_the_depth_buffer() {
             rest = behind;
         }
         let kernel = random.one_of(&kernels);
-        let (mut depths, mut bytes) = (before.clone(), SIZE.pixels());
-        let drawn = SIZE.draw(&mut bytes, SIZE.rows(), |frame| {
-            let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
-            let mut raster = Raster::new(frame).with_kernel(kernel).with_depth(buffer);
-            raster.triangle_with_effects(&vertices, &attributes, &look)
+        let mut depths = before.clone();
+        let (bytes, drawn) = draw_deep(SIZE, &mut depths, |raster| {
+            raster.with_kernel(kernel).triangle_with_effects(&vertices, &attributes, &look)
         });
         let mut written = 0;
         for y in 0..HEIGHT {
@@ -713,24 +752,17 @@ fn r6_order_and_winding_make_no_difference_with_effects() {
         let on = |order: [usize; 3]| {
             let (vertices, attributes) = (order.map(|i| vertices[i]), order.map(|i| attributes[i]));
             let (mut wide, mut narrow) = (before.clone(), before.iter().map(|&d| u16::of_depth(d)).collect::<Vec<_>>());
-            let (mut bytes, mut second) = (SIZE.pixels(), SIZE.pixels());
-            let drawn = [
-                SIZE.draw(&mut bytes, SIZE.rows(), |frame| {
-                    let deep = DepthBuffer::new(&mut wide, &frame).expect("long enough");
-                    Raster::new(frame).with_depth(deep).triangle_with_effects(&vertices, &attributes, &look)
-                }),
-                SIZE.draw(&mut second, SIZE.rows(), |frame| {
-                    let shallow = DepthBuffer::new(&mut narrow, &frame).expect("long enough");
-                    Raster::new(frame).with_depth(shallow).triangle_with_effects(&vertices, &attributes, &look)
-                }),
-            ];
-            (bytes, second, wide, narrow, drawn)
+            let on_wide =
+                draw_deep(SIZE, &mut wide, |mut raster| raster.triangle_with_effects(&vertices, &attributes, &look));
+            let on_narrow =
+                draw_deep(SIZE, &mut narrow, |mut raster| raster.triangle_with_effects(&vertices, &attributes, &look));
+            (on_wide, on_narrow, wide, narrow)
         };
         let expected = on([0, 1, 2]);
         for order in [[0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             assert!(on(order) == expected, "{order:?} of {vertices:?}, {attributes:?}, {look:?}");
         }
-        pixels += expected.4[0].pixels;
+        pixels += expected.0.1.pixels;
     }
     assert!(pixels > 30_000, "{pixels} pixels");
 }
@@ -762,10 +794,9 @@ fn effects_in_batches_are_those_row_by_row() {
                 let (left, top) = (x0 + random.within(-4, right), y0 + random.within(-4, bottom));
                 let small = [0; 3].map(|_| {
                     let (x, y) = (left * 256 + random.within(0, wide * 256), top * 256 + random.within(0, high * 256));
-                    let shade = U8F8::from_bits(random.within(0, 0xFF00) as u16);
-                    let (x, y) = (I24F8::from_bits(x as i32), I24F8::from_bits(y as i32));
+                    let shade = random.within(0, 0xFF00);
                     let depth = if is_crowd { 50_000 + random.within(0, 9_999) } else { random.log_uniform(30) as i64 };
-                    Vertex::new(x, y, shade, depth as u32).expect("in range")
+                    triangles::vertex(x, y, shade, depth)
                 });
                 let vertices =
                     if kind == 0 { triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into()) } else { small };
@@ -785,9 +816,8 @@ fn effects_in_batches_are_those_row_by_row() {
             PixelPipeline { source: ShadeSource::Lit(&Sum), ..PixelPipeline::PLAIN }
         };
         let (x, y) = (random.within(0, right) as u32, random.within(0, bottom) as u32);
-        let whole = Rect { x0: 0, y0: 0, x1: WIDTH as u32, y1: HEIGHT as u32 };
         let (left, top) = (x0 as u32, y0 as u32);
-        let clip = random.one_of(&[whole, Rect { x0: left + x / 2, y0: top + y / 2, x1: left + x, y1: top + y }]);
+        let clip = random.one_of(&[SIZE.rect(), Rect { x0: left + x / 2, y0: top + y / 2, x1: left + x, y1: top + y }]);
         let (has_depth, kernel) = (random.within(0, 1) == 0, random.one_of(&kernels));
         let draw = |draw: &mut dyn FnMut(&mut Raster<'_>) -> DrawStats| {
             let (mut depths, mut bytes) = (before.clone(), size.pixels());
@@ -851,7 +881,7 @@ fn quadratic_shades_are_the_definition() {
         let look = PixelPipeline { source: ShadeSource::Curved(limits), channels, ..PixelPipeline::PLAIN };
         let naive = Naive::new(SIZE, &vertices, &attributes, &look);
         let bytes = draw_by_all(&vertices, &attributes, &look);
-        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+        if !naive.has_area() {
             continue;
         }
         // Six terms of up to 8 · 5/3 of the greatest shade, each off by 2^-24 of it, and rounding to whole numbers by a
@@ -961,13 +991,7 @@ fn levels_are_the_definition() {
     let mut random = Random::named("levels");
     let (ubits, vbits) = (8_u32, 7_u32);
     let zeros = vec![0; 1 << (ubits + vbits)];
-    let mut numbers = Vec::new();
-    for level in 1..=8_u32 {
-        let bits = ubits.saturating_sub(level) + vbits.saturating_sub(level);
-        numbers.extend(vec![level as u8; 1 << bits]);
-    }
-    let levels = Levels::new(&numbers, ubits, vbits).expect("as many texels");
-    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let (numbers, table) = (level_numbers(ubits, vbits), texels_alone());
     let mappings = [Mapping::Affine, Mapping::Every16, Mapping::Perspective];
     let mut pixels = [[0_u32; 9]; 3];
     while tried.more() {
@@ -978,25 +1002,15 @@ fn levels_are_the_definition() {
             ..Attributes::default()
         });
         let i = random.within(0, 2) as usize;
-        let texture = TextureStage {
-            texels: Texels::new(&zeros, ubits, vbits).expect("as many texels"),
-            levels: Some(levels),
-            mapping: mappings[i],
-            tables: [&texel; 3],
-        };
+        let texture = texture(&zeros, Some(&numbers), (ubits, vbits), mappings[i], [&table; 3]);
         let look = PixelPipeline { texture: Some(texture), ..PixelPipeline::PLAIN };
         let naive = Naive::new(SIZE, &vertices, &attributes, &look);
-        if oracle::edge(naive.corners[0], naive.corners[1], naive.corners[2]) == 0 {
+        if !naive.has_area() {
             continue;
         }
         let bytes = draw_by_all(&vertices, &attributes, &look);
         let cut = random.within(1, i64::from(HEIGHT) - 1) as u32;
-        let mut bands = SIZE.pixels();
-        for rows in [0..cut, cut..HEIGHT as u32] {
-            SIZE.draw(&mut bands, rows, |frame| {
-                Raster::new(frame).triangle_with_effects(&vertices, &attributes, &look)
-            });
-        }
+        let bands = draw_in_bands(SIZE, &vertices, &attributes, &look, cut);
         assert_eq!(bands, bytes, "{vertices:?}, in bands");
         for y in 0..HEIGHT {
             let Some((first, last)) = naive.row(y) else { continue };
@@ -1018,12 +1032,9 @@ fn levels_are_the_definition() {
 fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
     let mut tried = Tried::new("a_level_is_the_least_whose_texels_are_as_large_as_pixels", 2_000);
     let mut random = Random::named("levels, lengths");
-    let numbers: Vec<u8> = (1..=8_u8).flat_map(|level| vec![level; 1 << (2 * (8 - u32::from(level)))]).collect();
-    let zeros = vec![0; 65_536];
-    let texel: Box<[u8; 65_536]> = (0..=255).flat_map(|_| 0..=255).collect::<Vec<u8>>().try_into().expect("64 KiB");
+    let (zeros, numbers, table) = (vec![0; 65_536], level_numbers(8, 8), texels_alone());
     let depth = 1 << 20;
-    let at = |x: i32, y: i32| Vertex::new(I24F8::from_bits(x), I24F8::from_bits(y), U8F8::default(), depth);
-    let vertices = [at(0, 0), at(40 * 256, 0), at(0, 40 * 256)].map(|vertex| vertex.expect("in range"));
+    let vertices = [(0, 0), (40 * 256, 0), (0, 40 * 256)].map(|(x, y)| triangles::vertex(x, y, 0, depth));
     while tried.more() {
         let mapping = random.one_of(&[Mapping::Affine, Mapping::Every16, Mapping::Perspective]);
         // Texels per pixel, a rotation of the image, and a shear.
@@ -1036,12 +1047,7 @@ fn a_level_is_the_least_whose_texels_are_as_large_as_pixels() {
         let attributes = [[0; 2], corner(1.0, across), corner(1.0, down)]
             .map(|texture| Attributes { texture, ..Attributes::default() });
         let look = PixelPipeline {
-            texture: Some(TextureStage {
-                texels: Texels::new(&zeros, 8, 8).expect("as many texels"),
-                levels: Some(Levels::new(&numbers, 8, 8).expect("as many texels")),
-                mapping,
-                tables: [&texel; 3],
-            }),
+            texture: Some(texture(&zeros, Some(&numbers), (8, 8), mapping, [&table; 3])),
             ..PixelPipeline::PLAIN
         };
         let level = draw(SIZE, &vertices, &attributes, &look, None, Kernel::PORTABLE)[0];

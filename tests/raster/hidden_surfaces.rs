@@ -5,6 +5,7 @@ use crate::support::triangles::{rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::internals::raster::scan_line::Lists;
+use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
@@ -54,7 +55,7 @@ impl Sheet {
     }
 }
 
-fn in_turn(mut raster: Raster<'_>, faces: &[Face]) -> DrawStats {
+fn in_turn<D: Cell>(mut raster: Raster<'_, D>, faces: &[Face]) -> DrawStats {
     let mut drawn = DrawStats::default();
     for (vertices, interpolation) in faces {
         drawn += raster.triangle(vertices, *interpolation);
@@ -370,7 +371,7 @@ fn d3_the_first_submitted_of_equals_wins() {
             let (right, _) = sheet.draw(|raster| in_turn(raster, &reversed));
             assert_eq!(sheet.depth_buffer(&faces).0, right, "{faces:?}");
             assert_eq!(sheet.scan_line(&mut lists, &faces).0, right, "{faces:?}");
-            let (narrow, _) = sheet.draw(|raster| narrow_in_turn(raster, &faces));
+            let (narrow, _) = sheet.draw(|raster| in_turn(raster.with_cleared_depth(&mut Vec::<u16>::new()), &faces));
             assert_eq!(narrow, right, "u16 cells, {faces:?}");
             pixels += right.iter().filter(|byte| **byte >= 10).count();
         }
@@ -389,17 +390,6 @@ fn d3_the_first_submitted_of_equals_wins() {
         assert_eq!(sheet.depth_buffer(&soup).0, sheet.scan_line(&mut lists, &soup).0, "{soup:?}");
     }
     assert!(pixels > 10_000, "{pixels}");
-}
-
-/// With a u16 depth buffer.
-fn narrow_in_turn(raster: Raster<'_>, faces: &[Face]) -> DrawStats {
-    let mut depths: Vec<u16> = Vec::new();
-    let mut raster = raster.with_cleared_depth(&mut depths);
-    let mut drawn = DrawStats::default();
-    for (vertices, interpolation) in faces {
-        drawn += raster.triangle(vertices, *interpolation);
-    }
-    drawn
 }
 
 #[test]
@@ -433,10 +423,7 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         let frame = Frame::new(&mut drawn, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
         let mut depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         depth.clear();
-        let mut raster = Raster::new(frame).with_depth(depth);
-        for (vertices, interpolation) in &faces {
-            raster.triangle(vertices, *interpolation);
-        }
+        in_turn(Raster::new(frame).with_depth(depth), &faces);
         assert_eq!(drawn, bytes, "{faces:?}");
         assert!(depths.iter().zip(&cells).all(|(is, should)| u128::from(*is) == *should), "{faces:?}");
     }

@@ -114,9 +114,7 @@ fn c3_what_is_very_far_is_drawn() {
         scene.add_light(Light::sun([0.0, 0.0, 1.0]));
         let mut renderer = Renderer::new();
         renderer.settings.hidden_surfaces = Some(way);
-        let mut vga = Vga::new();
-        renderer.draw(&scene, &mut vga).expect("a legal scene");
-        let lit = vga.pixels().iter().filter(|&&byte| byte != 0).count();
+        let lit = crate::support::scenes::frame_by(&mut renderer, &scene).0.iter().filter(|&&byte| byte != 0).count();
         assert!(lit > 5000, "{way}: {lit} pixels");
         tried.add(1);
     }

@@ -4,6 +4,7 @@
 //! `MODE13H_MODEL=model.obj cargo test --test render frames` tries a model of your own as well.
 
 use crate::support::judged::{Expected, by_the_oracle};
+use crate::support::scenes::{frame_by, shaded};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -21,15 +22,13 @@ const HEIGHT: i32 = Vga::HEIGHT as i32;
 
 /// Draws the scene twice, once with the oracle; returns the number of pixels that are not background.
 fn check(scene: &Scene, shading: Shading) -> usize {
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(shading.into());
+    let mut renderer = shaded(shading);
     let Expected { triangles, bytes: expected, counts } = by_the_oracle(&mut renderer, scene, Screen::MODE_13H);
     let off_screen = triangles.iter().filter(|(vertices, _)| is_off_screen(vertices)).count() as u64;
     for kernel in Kernel::available() {
-        let mut vga = Vga::new();
         renderer.kernel = kernel;
-        let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-        let differs = vga.pixels().iter().zip(&expected).position(|(is, should)| is != should);
+        let (bytes, stats) = frame_by(&mut renderer, scene);
+        let differs = bytes.iter().zip(&expected).position(|(is, should)| is != should);
         assert_eq!(differs, None, "kernel {}", kernel.name());
         assert_eq!(stats.kernel, kernel.name());
         // Of clipped faces, those that are off the screen are not passed to the raster.
@@ -124,18 +123,17 @@ fn d4_back_faces_alone_give_the_depth_buffers_frame() {
     for name in ["cube", "sphere", "cylinder"] {
         for step in 0..12 {
             let mut alone = turned(shapes::by_name(name).expect("listed"), f64::from(step) * 30.0);
-            let (mut first, mut second) = (Vga::new(), Vga::new());
             let mut renderer = Renderer::new();
-            let stats = renderer.draw(&alone, &mut first).expect("legal");
+            let (first, stats) = frame_by(&mut renderer, &alone);
             assert_eq!(stats.hidden_surfaces, HiddenSurfaces::BackFaces, "{name}");
             let covered = stats.raster.covered;
             // A speck far outside the picture makes it two objects.
             let mut speck = mode13h::scene::Object::new(shapes::cube());
             speck.position.x = 50.0;
             alone.add(speck);
-            let stats = renderer.draw(&alone, &mut second).expect("legal");
+            let (second, stats) = frame_by(&mut renderer, &alone);
             assert_eq!(stats.hidden_surfaces, HiddenSurfaces::DepthBuffer);
-            assert_eq!(first.pixels(), second.pixels(), "{name}");
+            assert_eq!(first, second, "{name}");
             assert_eq!(stats.raster.pixels, covered, "{name}: no pixel is covered by two front faces");
             tried.add(1);
         }

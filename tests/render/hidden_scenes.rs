@@ -1,6 +1,7 @@
 //! The four hidden-surface methods on whole scenes: which one is chosen, and that all of them give the same picture
 //! where they are right.
 
+use crate::support::scenes::frame_by;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -47,10 +48,10 @@ fn bars() -> Scene {
 }
 
 fn picture(scene: &Scene, way: Option<HiddenSurfaces>) -> (Vec<u8>, HiddenSurfaces) {
-    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    let mut renderer = Renderer::new();
     renderer.settings.hidden_surfaces = way;
-    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    (vga.pixels().to_vec(), stats.hidden_surfaces)
+    let (bytes, stats) = frame_by(&mut renderer, scene);
+    (bytes, stats.hidden_surfaces)
 }
 
 fn by(scene: &Scene, way: HiddenSurfaces) -> Vec<u8> {
@@ -295,10 +296,9 @@ fn depths_of_earlier_frames_hide_nothing() {
         renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer);
         renderer.settings.accuracy = shading.map(Into::into);
         renderer.settings.vertex_path = path;
-        let mut alone = Vga::new();
         let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
-        renderer.with_same_settings().draw(&scene, &mut alone).expect("a legal scene");
-        assert!(vga.pixels() == alone.pixels(), "frame {number}, {shading:?}, {path:?}");
+        let (alone, _) = frame_by(&mut renderer.with_same_settings(), &scene);
+        assert!(vga.pixels() == alone, "frame {number}, {shading:?}, {path:?}");
         drawn += stats.raster.pixels;
     }
     assert!(drawn > 1_000_000, "{drawn}");

@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use crate::floor::{HEIGHT, WIDTH};
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
+use crate::support::scenes::frame_by;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -26,10 +27,9 @@ fn renderer(path: VertexPath) -> Renderer {
 }
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
-    let mut vga = Vga::new();
-    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+    let (bytes, stats) = frame_by(renderer, scene);
     assert_eq!(Some(stats.vertex_path), renderer.settings.vertex_path);
-    vga.pixels().to_vec()
+    bytes
 }
 
 /// An angle that both paths represent exactly, in 65,536ths of a turn.
@@ -209,9 +209,7 @@ fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
             let [float, integer] = VertexPath::ALL.map(|path| {
                 let mut renderer = renderer(path);
                 renderer.settings.accuracy = Some(shading.into());
-                let mut vga = Vga::new();
-                let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
-                (vga.pixels().to_vec(), stats)
+                frame_by(&mut renderer, &scene)
             });
             let (f, i) = (float.1, integer.1);
             assert_eq!((f.vertices, f.faces, f.hidden_surfaces), (i.vertices, i.faces, i.hidden_surfaces));

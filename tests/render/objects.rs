@@ -15,13 +15,8 @@ use mode13h::settings::{Accuracy, Shading, VertexPath};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
+use crate::support::scenes::frame as drawn;
 use crate::support::tried::Tried;
-
-fn drawn(scene: &Scene) -> Vec<u8> {
-    let mut vga = Vga::new();
-    Renderer::new().draw(scene, &mut vga).expect("a legal scene");
-    vga.pixels().to_vec()
-}
 
 /// A torus, a cube in front of it, and a cone beside them.
 fn three() -> (Scene, [ObjectId; 3]) {

@@ -33,9 +33,8 @@ const SAVES_WORK: [Effect; 10] = [
 fn draw(scene: &Scene, prepare: impl FnOnce(&mut Renderer)) -> (Vec<u8>, Stats, Renderer) {
     let mut renderer = Renderer::new();
     prepare(&mut renderer);
-    let mut vga = Vga::new();
-    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
-    (vga.pixels().to_vec(), stats, renderer)
+    let (bytes, stats) = scenes::frame_by(&mut renderer, scene);
+    (bytes, stats, renderer)
 }
 
 fn differing(a: &[u8], b: &[u8]) -> usize {
@@ -73,10 +72,7 @@ fn the_full_work_gives_the_same_bytes() {
             draw(&scene, |renderer| renderer.settings.hidden_surfaces = Some(HiddenSurfaces::DepthBuffer));
         let covered_twice = differing(&expected, &full);
         assert!(covered_twice == 0, "{name}, depth buffer: {covered_twice} pixels differ");
-        for effect in Effect::ALL {
-            if !SAVES_WORK.contains(&effect) {
-                continue;
-            }
+        for effect in SAVES_WORK {
             let on = effect != Effect::BackFaceCulling;
             if !on && called_for(&chosen, Effect::NearClipping) {
                 // The near plane cuts the object open, and its inside, which is never drawn, would show.
@@ -216,7 +212,7 @@ fn is_elsewhere(effect: Effect) -> bool {
 fn leaving_out_what_is_called_for_changes_the_picture() {
     let mut tried = Tried::new("leaving_out_what_is_called_for_changes_the_picture", 15);
     let mut changed = [false; Effect::COUNT];
-    for (name, mut scene) in scenes::all() {
+    for (_, mut scene) in scenes::all() {
         // For a cycle, a moment at which it has moved.
         scene.set_time(0.3);
         let frame = |force: Option<Effect>| {
@@ -238,7 +234,6 @@ fn leaving_out_what_is_called_for_changes_the_picture() {
                 tried.add(1);
             }
         }
-        let _ = name;
     }
     for (i, effect) in Effect::ALL.into_iter().enumerate() {
         assert!(changed[i] || is_elsewhere(effect), "no scene needs {effect}");
@@ -714,18 +709,15 @@ fn clipping_that_is_needed_cannot_be_switched_off() {
         (scene.objects_mut()[0].materials[0].specular, scene.objects_mut()[0].materials[0].shininess) = (0.4, 8.0);
         for shading in Shading::ALL {
             for way in HiddenSurfaces::ALL {
-                let mut frames = [true, false].map(|forced| {
-                    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-                    renderer.settings.accuracy = Some(shading.into());
+                let [forced, free] = [true, false].map(|forced| {
+                    let mut renderer = scenes::shaded(shading);
                     renderer.settings.hidden_surfaces = Some(way);
                     if forced {
                         renderer.force(Effect::NearClipping, Some(false));
                         renderer.force(Effect::ScreenClipping, Some(false));
                     }
-                    renderer.draw(&scene, &mut vga).expect("a legal scene");
-                    vga.pixels().to_vec()
+                    scenes::frame_by(&mut renderer, &scene).0
                 });
-                let [forced, free] = &mut frames;
                 assert!(forced == free, "{shading}, {way}, {z}");
                 tried.add(1);
             }

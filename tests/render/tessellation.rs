@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use crate::support::scenes::{frame, frame_by, framed, shaded};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -12,7 +13,6 @@ use mode13h::render::{Renderer, Screen};
 use mode13h::scene::{Object, Scene};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::Shading;
-use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};
 
@@ -104,7 +104,7 @@ fn r12_walls_that_are_split_are_closed() {
         clipped += usize::from(cut > 0);
         let loops = outlines(&parts);
         assert!(loops.len() <= 1, "{} outlines of {} triangles", loops.len(), parts.len());
-        let mut counts = vec![0_u32; Vga::SHOWN];
+        let mut counts = vec![0_u32; mode13h::vga::Vga::SHOWN];
         for corners in &parts {
             let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
             mode13h::internals::raster::reference::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
@@ -147,7 +147,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
 
 /// An object with a highlight under one light.
 fn lit_by(mesh: Mesh, light: Light, shininess: f32) -> Scene {
-    let mut scene = crate::support::scenes::framed(mesh);
+    let mut scene = framed(mesh);
     scene.clear_lights();
     scene.add_light(light);
     scene.ambient = 0.0;
@@ -162,11 +162,7 @@ fn highlight() -> Scene {
 }
 
 fn middle(scene: &Scene, shading: Shading) -> u8 {
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(shading.into());
-    let mut vga = Vga::new();
-    renderer.draw(scene, &mut vga).expect("a legal scene");
-    vga.pixels()[100 * 320 + 160]
+    frame_by(&mut shaded(shading), scene).0[100 * 320 + 160]
 }
 
 #[test]
@@ -195,15 +191,12 @@ fn whole_faces_are_lit_at_their_own_middles_after_split_ones() {
     let mut scene = highlight();
     scene.settings.accuracy = Some(Shading::Flat.into());
     scene.settings.tessellation = Some(5.0);
-    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
-    renderer.draw(&scene, &mut vga).expect("a legal scene");
-    let split = vga.pixels().to_vec();
+    let mut renderer = Renderer::new();
+    let (split, _) = frame_by(&mut renderer, &scene);
     scene.settings.tessellation = None;
-    renderer.draw(&scene, &mut vga).expect("a legal scene");
-    let mut fresh = Vga::new();
-    Renderer::new().draw(&scene, &mut fresh).expect("a legal scene");
-    assert!(vga.pixels() == fresh.pixels(), "the reused renderer draws something else");
-    assert!(vga.pixels() != split.as_slice(), "nothing was split");
+    let (whole, _) = frame_by(&mut renderer, &scene);
+    assert!(whole == frame(&scene), "the reused renderer draws something else");
+    assert!(whole != split, "nothing was split");
 }
 
 #[test]
@@ -239,7 +232,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
             let scene = |normals: [Vec3; 3]| {
                 let positions = vec![Vec3::new(-1.0, -1.0, 0.0), Vec3::new(1.0, -1.0, 0.0), Vec3::new(0.0, 1.0, 0.0)];
                 let mesh = Mesh::with_normals(positions, normals.to_vec(), vec![[0, 1, 2]]).expect("sound");
-                let mut scene = crate::support::scenes::framed(mesh);
+                let mut scene = framed(mesh);
                 scene.background = BACKGROUND;
                 scene.palette = mode13h::palette::builtin::by_name("materials-4x64").map(|found| found.palette.clone());
                 scene.settings.dither = dither;
@@ -255,13 +248,7 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
                 // Interpolated between pixels that are lit.
                 _ => (0.2, 1),
             };
-            let draw = |scene: &Scene| {
-                let mut renderer = Renderer::new();
-                renderer.settings.accuracy = Some(shading.into());
-                let mut vga = Vga::new();
-                renderer.draw(scene, &mut vga).expect("a legal scene");
-                vga.pixels().to_vec()
-            };
+            let draw = |scene: &Scene| frame_by(&mut shaded(shading), scene).0;
             let [one, other, to_eye] = [axis, -axis, Vec3::Z].map(|normal| draw(&scene([normal; 3])));
             let scene = scene([axis, -axis, third as f32 * axis]);
             let bytes = draw(&scene);
@@ -327,7 +314,7 @@ fn p2_dither_keeps_to_its_ramp() {
         for (first, entries) in
             [(1, 1_u16), (7, 2), (64, 64), (192, 64), (255, 1)].into_iter().flat_map(|ramp| [ramp; 5])
         {
-            let mut scene = crate::support::scenes::framed(shapes::torus(12, 8));
+            let mut scene = framed(shapes::torus(12, 8));
             scene.settings.dither = Some(DitherPattern::Ordered);
             scene.settings.accuracy = Some(shading.into());
             scene.objects_mut()[0].angles = [0.3, tried_angle(first, entries), 0.2].map(Angle::from_radians);
@@ -335,11 +322,10 @@ fn p2_dither_keeps_to_its_ramp() {
             let material = &mut scene.objects_mut()[0].materials[0];
             material.ramp = mode13h::light::RampChoice::Entries(ramp);
             (material.specular, material.shininess) = (1.0, 5.0);
-            let mut vga = Vga::new();
-            let stats = Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
+            let (bytes, stats) = frame_by(&mut Renderer::new(), &scene);
             // A table of normals holds whole shades, so there is nothing between two entries.
             assert_eq!(stats.raster.dithered > 1000, shading != Shading::PhongTable, "{shading}");
-            assert!(vga.pixels().iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{shading}, {ramp:?}");
+            assert!(bytes.iter().all(|byte| *byte == 0 || ramp.contains(*byte)), "{shading}, {ramp:?}");
             tried.add(1);
         }
     }

@@ -7,11 +7,9 @@ use mode13h::glam::Vec2;
 use mode13h::internals::span::texture::{Levels, TexelsError};
 use mode13h::mesh::shapes;
 use mode13h::palette::{Lut64K, Palette, Rgb};
-use mode13h::render::Renderer;
 use mode13h::scene::Shared;
 use mode13h::settings::Mapping;
 use mode13h::texture::{Mipmap, Texture, TextureError};
-use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
 use crate::support::tried::Tried;
@@ -46,9 +44,7 @@ fn images_far_from_their_corner_are_brought_back() {
         scene.objects_mut()[0].materials[0].texture = Some(Shared::clone(&texture));
         scene.objects_mut()[0].angles = [0.2, 0.9, 0.1].map(Angle::from_radians);
         scene.settings.mapping = Some(mapping);
-        let mut vga = Vga::new();
-        Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
-        vga.pixels().to_vec()
+        crate::support::scenes::frame(&scene)
     };
     for mapping in [Mapping::Affine, Mapping::Perspective] {
         let expected = frame(mapping, Vec2::ZERO);

@@ -6,13 +6,14 @@
 //! kernel, and the test fails.
 
 use std::fs::{self, File};
-use std::io::{BufReader, BufWriter};
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use mode13h::palette::Rgb;
 use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 
+use super::picture::Png;
 use super::tried::Tried;
 
 /// What a golden frame holds.
@@ -60,14 +61,9 @@ pub fn check(name: &str, tried: &mut Tried, mut frame: impl FnMut(Kernel) -> Ind
 
 /// Reads a picture that holds a frame.
 pub fn read(path: &Path) -> Indexed {
-    let file = File::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    let mut reader = png::Decoder::new(BufReader::new(file)).read_info().expect("a PNG");
-    let info = reader.info();
-    assert_eq!((info.color_type, info.width, info.height), (png::ColorType::Indexed, 320, 200));
-    let colors =
-        info.palette.as_ref().expect("a palette").chunks(3).map(|c| Rgb { r: c[0], g: c[1], b: c[2] }).collect();
-    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
-    reader.next_frame(&mut pixels).expect("a frame");
+    let Png { size, kind, pixels, palette: colors, .. } =
+        Png::decode(&fs::read(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())));
+    assert_eq!((kind, size), (png::ColorType::Indexed, (320, 200)));
     Indexed { pixels, colors }
 }
 

@@ -7,8 +7,9 @@ pub mod golden;
 #[cfg(feature = "alloc")]
 pub mod judged;
 #[cfg(feature = "alloc")]
-#[cfg(feature = "alloc")]
 pub mod odd_views;
+#[cfg(feature = "png")]
+pub mod picture;
 pub mod property;
 #[cfg(feature = "alloc")]
 pub mod scenes;

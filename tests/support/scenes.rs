@@ -7,11 +7,32 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
+use mode13h::render::{Renderer, Stats};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Scene, Shared};
 use mode13h::settings::{DitherPattern, Settings, Shading};
 use mode13h::texture::Texture;
+use mode13h::vga::Vga;
 
 use mode13h_conformance::Random;
+
+/// A renderer that draws with this shading.
+pub fn shaded(shading: Shading) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.settings.accuracy = Some(shading.into());
+    renderer
+}
+
+/// The frame that a renderer draws, and its counts.
+pub fn frame_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u8>, Stats) {
+    let mut vga = Vga::new();
+    let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
+    (vga.pixels().to_vec(), stats)
+}
+
+/// The frame of a new renderer.
+pub fn frame(scene: &Scene) -> Vec<u8> {
+    frame_by(&mut Renderer::new(), scene).0
+}
 
 /// A still mesh in the centre, seen straight on by a camera that frames its bounding sphere, under one sun: it is in
 /// the picture however it is rotated.

@@ -5,6 +5,8 @@
 pub mod film;
 #[path = "../../../tests/support/golden.rs"]
 pub mod golden;
+#[path = "../../../tests/support/picture.rs"]
+pub mod picture;
 #[path = "../../../tests/support/property.rs"]
 pub mod property;
 #[path = "../../../tests/support/scenes.rs"]

@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::process::{Command, Output};
 
-use mode13h::palette::Rgb;
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub(crate) use crate::support::picture::Png;
 pub(crate) use crate::support::workspace::names_in;
 use crate::support::workspace::root;
 
@@ -158,43 +158,3 @@ pub(crate) type Shape = ((u32, u32), png::ColorType, Option<(u32, u32)>);
 
 /// The shape of a frame as the VGA shows it.
 pub(crate) const MODE_13H: Shape = ((320, 200), png::ColorType::Indexed, Some((6, 5)));
-
-/// A PNG of eight bits, decoded.
-#[derive(Clone, PartialEq, Debug)]
-pub(crate) struct Png {
-    pub(crate) size: (u32, u32),
-    kind: png::ColorType,
-    pub(crate) density: Option<(u32, u32)>,
-    /// The bytes as stored in the file.
-    pub(crate) pixels: Vec<u8>,
-    /// The palette; empty if the picture has none.
-    pub(crate) palette: Vec<Rgb>,
-}
-
-impl Png {
-    #[track_caller]
-    pub(crate) fn decode(png: &[u8]) -> Png {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().expect("a PNG");
-        let mut pixels = vec![0; reader.output_buffer_size().expect("its size")];
-        assert_eq!(reader.next_frame(&mut pixels).expect("an image").bit_depth, png::BitDepth::Eight);
-        let info = reader.info();
-        let palette = info.palette.as_deref().unwrap_or_default();
-        Png {
-            size: (info.width, info.height),
-            kind: info.color_type,
-            density: info.pixel_dims.map(|dims| (dims.xppu, dims.yppu)),
-            palette: palette.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect(),
-            pixels,
-        }
-    }
-
-    /// Size, colour type and density.
-    pub(crate) fn shape(&self) -> Shape {
-        (self.size, self.kind, self.density)
-    }
-
-    /// The colours of an indexed picture, pixel by pixel.
-    pub(crate) fn colors(&self) -> Vec<Rgb> {
-        self.pixels.iter().map(|&index| self.palette[usize::from(index)]).collect()
-    }
-}

@@ -3,6 +3,8 @@
 
 #[path = "../../../tests/support/film.rs"]
 pub mod film;
+#[path = "../../../tests/support/picture.rs"]
+pub mod picture;
 #[path = "../../../tests/support/tried.rs"]
 pub mod tried;
 #[path = "../../../tests/support/workspace.rs"]

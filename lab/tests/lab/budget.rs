@@ -208,9 +208,7 @@ fn cover(mut renderer: Renderer, scene: &Scene) -> (Vec<bool>, Stats) {
     let mut on = |background: u8| {
         let mut scene = scene.clone();
         (scene.background, scene.background_color) = (background, None);
-        let mut vga = Vga::new();
-        let stats = renderer.draw(&scene, &mut vga).expect("a legal scene");
-        (vga.pixels().to_vec(), stats)
+        scenes::frame_by(&mut renderer, &scene)
     };
     let ((one, stats), (other, _)) = (on(1), on(2));
     (one.iter().zip(&other).map(|(one, other)| one == other).collect(), stats)

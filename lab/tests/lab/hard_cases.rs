@@ -1,10 +1,11 @@
 //! The pictures of hard cases: the right side agrees with the engine and the oracle, the wrong side differs, and the
 //! program writes what the library draws.
 
-use std::io::Cursor;
 use std::path::PathBuf;
 
+use crate::support::picture::Png;
 use crate::support::tried::Tried;
+use mode13h::palette::Rgb;
 use mode13h::raster::{Frame, Raster, Vertex};
 use mode13h_conformance::oracle;
 use mode13h_lab::hard_cases::{CASES, Case, Comparison, Mark, Panel, by_id};
@@ -140,16 +141,6 @@ fn show_ids_are_known_once_and_in_any_letters() {
     }
 }
 
-/// Size, indices and colours of an indexed PNG.
-fn decode(bytes: &[u8]) -> (u32, u32, Vec<u8>, Vec<u8>) {
-    let mut reader = png::Decoder::new(Cursor::new(bytes)).read_info().expect("a PNG");
-    let (width, height) = reader.info().size();
-    let palette = reader.info().palette.as_ref().expect("a palette").to_vec();
-    let mut pixels = vec![0; (width * height) as usize];
-    reader.next_frame(&mut pixels).expect("a picture");
-    (width, height, pixels, palette)
-}
-
 fn kept(case: &Case) -> PathBuf {
     crate::support::workspace::root().join(format!("tests/pictures/{}.png", case.id.to_lowercase()))
 }
@@ -182,7 +173,7 @@ fn show_the_pictures_of_the_list_are_those_that_are_drawn() {
             std::fs::write(kept(case), &png).expect("written");
         }
         let there = std::fs::read(kept(case)).unwrap_or_else(|error| panic!("{}: {error}", kept(case).display()));
-        assert!(decode(&there) == decode(&png), "{}: another picture than {}", case.id, kept(case).display());
+        assert!(Png::decode(&there) == Png::decode(&png), "{}: another picture than {}", case.id, kept(case).display());
         assert!(there.len() <= 20 * 1024, "{}: {} bytes", case.id, there.len());
         tried.add(1);
     }
@@ -193,31 +184,26 @@ fn show_the_pictures_of_the_list_are_those_that_are_drawn() {
 fn show_pixels_are_16_times_enlarged_and_have_their_colour() {
     let case = by_id("R14").expect("a case");
     let comparison = case.draw();
-    let (width, height, pixels, palette) = decode(&case.png().expect("memory"));
+    let png = Png::decode(&case.png().expect("memory"));
+    let ([width, height], colors) = ([png.size.0, png.size.1].map(|side| side as usize), png.colors());
     let right = &comparison.right;
-    let at = |x: usize, y: usize| {
-        let index = usize::from(pixels[y * width as usize + x]);
-        [palette[3 * index], palette[3 * index + 1], palette[3 * index + 2]]
-    };
-    let left = width as usize - 16 - right.width() * 16;
-    let empty = [0x1B, 0x25, 0x47];
+    let at = |x: usize, y: usize| colors[y * width + x];
+    let left = width - 16 - right.width() * 16;
+    let empty = Rgb::new(0x1B, 0x25, 0x47);
     // The panel's top: the first row of cells.
-    let top = (0..height as usize).find(|y| at(left + 3, y + 3) == empty).expect("a panel") + 3 - 1;
+    let top = (0..height).find(|y| at(left + 3, y + 3) == empty).expect("a panel") + 3 - 1;
     let mut seen = 0;
     for y in 0..right.height() {
         for x in 0..right.width() {
             // Beside the dot and away from the corner; a line may cross there, on pixels of an edge.
-            let colors: Vec<[u8; 3]> = [(3, 3), (12, 3), (3, 12), (12, 12), (5, 11)]
+            let around: Vec<Rgb> = [(3, 3), (12, 3), (3, 12), (12, 12), (5, 11)]
                 .map(|(dx, dy)| at(left + 16 * x + dx, top + 16 * y + dy))
                 .to_vec();
             let due = match right.writes()[y * right.width() + x] {
                 0 => empty,
-                _ => {
-                    let color = comparison.palette.on_dac()[right.pixels()[y * right.width() + x]];
-                    [color.r, color.g, color.b]
-                }
+                _ => comparison.palette.on_dac()[right.pixels()[y * right.width() + x]],
             };
-            assert!(colors.iter().filter(|color| **color == due).count() >= 2, "({x}, {y}): {colors:?}, not {due:?}");
+            assert!(around.iter().filter(|color| **color == due).count() >= 2, "({x}, {y}): {around:?}, not {due:?}");
             seen += 1;
         }
     }

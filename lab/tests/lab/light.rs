@@ -351,9 +351,7 @@ fn r10_denormals_and_minus_zero_draw_as_zero() {
         scene[object].position = Vec3::splat(tiny);
         scene[object].angles = [f64::from(tiny); 3].map(Angle::from_radians);
         scene.add_light(Light::sun([0.4, 0.6, 1.0]));
-        let mut vga = Vga::new();
-        Renderer::new().draw(&scene, &mut vga).expect("a legal scene");
-        vga.pixels().to_vec()
+        crate::support::scenes::frame(&scene)
     };
     let with_zero = frame(0.0);
     assert!(with_zero.iter().filter(|&&byte| byte != 0).count() > 1000);

@@ -1,6 +1,8 @@
 //! Helpers that several test files share.
 #![expect(dead_code, unreachable_pub, reason = "each test program uses its part")]
 
+#[path = "../../../tests/support/picture.rs"]
+pub mod picture;
 #[path = "../../../tests/support/property.rs"]
 pub mod property;
 #[path = "../../../tests/support/scenes.rs"]
@@ -15,14 +17,9 @@ pub mod tried;
 pub mod workspace;
 
 use mode13h::render::Renderer;
-use mode13h::settings::{Accuracy, Shading};
+use mode13h::settings::Accuracy;
 
-/// A renderer that draws with this shading.
-pub fn shaded(shading: Shading) -> Renderer {
-    let mut renderer = Renderer::new();
-    renderer.settings.accuracy = Some(shading.into());
-    renderer
-}
+pub use scenes::shaded;
 
 /// A renderer that draws within this error.
 pub fn within(max_error: f32) -> Renderer {

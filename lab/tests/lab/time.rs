@@ -14,13 +14,6 @@ use mode13h::raster::Frame;
 use mode13h::render::Renderer;
 use mode13h::scene::{Object, Scene, Shared};
 use mode13h::settings::VertexPath;
-use mode13h::vga::Vga;
-
-fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
-    let mut vga = Vga::new();
-    renderer.draw(scene, &mut vga).expect("a legal scene");
-    vga.pixels().to_vec()
-}
 
 /// The steps per frame about x and y, in radians. f64 adds them without rounding, a million times and more, so after n
 /// frames the angles are exactly n times the steps.
@@ -130,7 +123,7 @@ fn t2_any_step_is_defined() {
         let mut scene = crate::support::scenes::framed(shapes::cube());
         scene.objects_mut()[0].rotate_x(Angle::from_radians(0.4));
         steps.iter().for_each(|step| scene.objects_mut()[0].rotate_y(Angle::from_radians(*step)));
-        frame(&mut Renderer::new(), &scene)
+        crate::support::scenes::frame(&scene)
     };
     let first = turned(&[]);
     for step in sizes.into_iter().flat_map(|size| [size, -size]) {
