@@ -213,12 +213,14 @@ impl Rows<'_> {
         Ratio::new(&self.times[way], &self.times[to], &mut Random::again(self.seed))
     }
 
+    /// Indices of the configurations that `of` wants to know, and what it says of them.
+    fn each<T>(&self, of: impl Fn(Kind) -> Option<T>) -> impl Iterator<Item = (usize, T)> {
+        self.ways.iter().enumerate().filter_map(move |(i, way)| Some((i, of(way.kind)?)))
+    }
+
     /// Indices and names of the shadings.
     fn each_shading(&self) -> impl Iterator<Item = (usize, Shading)> {
-        self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
-            Kind::Shading(shading) => Some((i, shading)),
-            _ => None,
-        })
+        self.each(|kind| if let Kind::Shading(shading) = kind { Some(shading) } else { None })
     }
 
     /// A row for each shading drawn.
@@ -264,10 +266,7 @@ impl Rows<'_> {
 
     /// Indices and errors of the budgets, in the order of [`BUDGETS`].
     fn of_budgets(&self) -> impl Iterator<Item = (usize, f64)> {
-        self.ways.iter().enumerate().filter_map(|(i, way)| match way.kind {
-            Kind::Budget(shades) => Some((i, shades)),
-            _ => None,
-        })
+        self.each(|kind| if let Kind::Budget(shades) = kind { Some(shades) } else { None })
     }
 
     fn budgets(&self) -> Vec<BudgetRow> {
@@ -301,15 +300,8 @@ impl Rows<'_> {
     }
 
     fn choices(&self) -> Vec<OptionRow> {
-        let chosen: Vec<(usize, Aspect)> = self
-            .ways
-            .iter()
-            .enumerate()
-            .filter_map(|(i, way)| match way.kind {
-                Kind::Choice(aspect) => Some((i, aspect)),
-                _ => None,
-            })
-            .collect();
+        let chosen: Vec<(usize, Aspect)> =
+            self.each(|kind| if let Kind::Choice(aspect) = kind { Some(aspect) } else { None }).collect();
         let row = |&(place, aspect): &(usize, Aspect)| {
             let first = chosen.iter().find(|(_, of)| *of == aspect).map_or(place, |(first, _)| *first);
             let ratio = self.ratio(place, first);

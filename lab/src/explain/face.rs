@@ -81,20 +81,32 @@ impl FaceHere {
     /// ```
     #[must_use]
     pub fn edges(&self, x: u32, y: u32) -> [Edge; 3] {
-        let centre = [x, y].map(|c| i64::from(c) * 256 + 128);
-        [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
-            let (a, b) = (at(&self.corners[from]), at(&self.corners[to]));
-            let along = [b[0] - a[0], b[1] - a[1]];
-            let kind = match along {
-                [_, down] if down < 0 => EdgeKind::Left,
-                [_, down] if down > 0 => EdgeKind::Right,
-                [across, _] if across > 0 => EdgeKind::Top,
-                _ => EdgeKind::Bottom,
-            };
-            // Two products, each within 2²¹ · 2²¹.
-            Edge { kind, value: along[0] * (centre[1] - a[1]) - along[1] * (centre[0] - a[0]) }
-        })
+        edges(&self.corners, x, y)
     }
+}
+
+/// The edges of clockwise corners, evaluated at the centre of a pixel.
+fn edges(corners: &[Vertex; 3], x: u32, y: u32) -> [Edge; 3] {
+    let centre = [x, y].map(|c| i64::from(c) * 256 + 128);
+    [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
+        let (a, b) = (at(&corners[from]), at(&corners[to]));
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let kind = match along {
+            [_, down] if down < 0 => EdgeKind::Left,
+            [_, down] if down > 0 => EdgeKind::Right,
+            [across, _] if across > 0 => EdgeKind::Top,
+            _ => EdgeKind::Bottom,
+        };
+        // Two products, each within 2²¹ · 2²¹.
+        Edge { kind, value: along[0] * (centre[1] - a[1]) - along[1] * (centre[0] - a[0]) }
+    })
+}
+
+/// Returns whether an edge of a triangle passes through a pixel's centre.
+pub(super) fn has_edge_at(vertices: &[Vertex; 3], x: u32, y: u32) -> bool {
+    let values = edges(&clockwise(*vertices), x, y).map(|edge| edge.value);
+    // At each point their sum is twice the triangle's area.
+    values.iter().sum::<i64>() > 0 && values.contains(&0) && values.iter().all(|value| *value >= 0)
 }
 
 /// Clockwise on the screen, the upper one first.

@@ -99,19 +99,6 @@ impl OnePixel {
     fn look(&mut self, met: (&[Vertex; 3], &[Attributes; 3]), behind: u8, look: &PixelPipeline<'_>) -> u8 {
         self.draw(behind, |raster| raster.triangle_with_effects(met.0, met.1, look)).unwrap_or(behind)
     }
-
-    /// Returns whether a triangle that does not cover the pixel has an edge through its centre.
-    pub(super) fn is_on_edge(&self, vertices: &[Vertex; 3]) -> bool {
-        // In a frame of at most 4,096 pixels a side.
-        let centre = [self.x, self.y].map(|c| i64::from(c) * 256 + 128);
-        let area = mode13h::internals::raster::clip::doubled_area(vertices).signum();
-        let at = |i: usize| [i64::from(vertices[i].x().to_bits()), i64::from(vertices[i].y().to_bits())];
-        let sides = [(0, 1), (1, 2), (2, 0)].map(|(from, to)| {
-            let (a, b) = (at(from), at(to));
-            area * ((b[0] - a[0]) * (centre[1] - a[1]) - (b[1] - a[1]) * (centre[0] - a[0]))
-        });
-        area != 0 && sides.iter().all(|side| *side >= 0) && sides.contains(&0)
-    }
 }
 
 /// A light query: eight points, and the shades of each on three channels.

@@ -11,6 +11,7 @@ use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h::settings::HiddenSurfaces;
 
+use super::face::has_edge_at;
 use super::one_pixel::{Bytes, OnePixel};
 
 /// A triangle that covers the pixel, or has an edge through its centre.
@@ -108,7 +109,7 @@ fn meet(triangle: &DrawnTriangle<'_>, number: usize, pixel: &mut OnePixel, exact
     let DrawnTriangle { object, face, vertices, interpolation, ramp, effects } = *triangle;
     let by = if exact || effects.is_some() { Interpolation::Flat(0) } else { interpolation };
     let covers = pixel.draw(0, |raster| raster.triangle(vertices, by)).is_some();
-    if !covers && (!by.has_exact_cover() || !pixel.is_on_edge(vertices)) {
+    if !covers && (!by.has_exact_cover() || !has_edge_at(vertices, pixel.x, pixel.y)) {
         return None;
     }
     // Column and row of a frame.

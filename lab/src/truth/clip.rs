@@ -31,6 +31,9 @@ pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
         .zip(one)
         .map(|(corner, one)| Kept { seen: corner.seen, on_face: one, on_screen: one })
         .collect();
+    if polygon.iter().all(|corner| (0..5).all(|plane| inside(eye, plane, corner.seen) >= 0.0)) {
+        return polygon;
+    }
     for plane in 0..5 {
         let mut left = Vec::new();
         for i in 0..polygon.len() {
@@ -49,9 +52,15 @@ pub(super) fn clip(eye: &Eye, triangle: &[Corner; 3]) -> Vec<Kept> {
     polygon
 }
 
-/// Returns whether clipping leaves a triangle unchanged.
-pub(super) fn is_whole(eye: &Eye, triangle: &[Corner; 3]) -> bool {
-    triangle.iter().all(|corner| (0..5).all(|plane| inside(eye, plane, corner.seen) >= 0.0))
+/// The remaining corners on the screen, in pixels.
+pub(super) fn outline(eye: &Eye, triangle: &[Corner; 3]) -> Vec<[f64; 2]> {
+    clip(eye, triangle).iter().map(|corner| eye.project(corner.seen)).collect()
+}
+
+/// The least and the greatest coordinate of some points along an axis; infinite if there are none.
+pub(super) fn bounds(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
+    let along = || points.iter().map(|point| point[axis]);
+    (along().fold(f64::INFINITY, f64::min), along().fold(f64::NEG_INFINITY, f64::max))
 }
 
 /// Distance of a point inside a plane, in arbitrary units; negative outside.

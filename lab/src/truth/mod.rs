@@ -373,9 +373,7 @@ impl<'a> Truth<'a> {
     /// Visits every pixel that the face covers with unrounded vertices.
     fn unrounded(&self, standard: Standard, face: Face, seen: &mut impl FnMut(Hit, i64, i64)) {
         let Some((_, corners)) = self.triangle(face) else { return };
-        let polygon: Vec<[f64; 2]> =
-            clip::clip(&self.eye, &corners).iter().map(|corner| self.eye.project(corner.seen)).collect();
-        self.pixels_about(&polygon, |x, y| {
+        self.pixels_about(&clip::outline(&self.eye, &corners), |x, y| {
             if let Some(hit) = self.unrounded_hit(standard, face, &corners, x, y) {
                 seen(hit, x, y);
             }
@@ -408,8 +406,7 @@ impl<'a> Truth<'a> {
     /// Calls `pixel` for all pixels of the frame within the bounding box of the points, and a few more.
     fn pixels_about(&self, points: &[[f64; 2]], mut pixel: impl FnMut(i64, i64)) {
         let [columns, rows] = [(0, self.screen.width), (1, self.screen.height)].map(|(axis, size)| {
-            let low = points.iter().map(|point| point[axis]).fold(f64::INFINITY, f64::min);
-            let high = points.iter().map(|point| point[axis]).fold(f64::NEG_INFINITY, f64::max);
+            let (low, high) = clip::bounds(points, axis);
             // Below 2³²; without points the range is empty.
             (low - 1.0).max(0.0) as i64..(high + 1.0).min(f64::from(size)).max(0.0) as i64
         });

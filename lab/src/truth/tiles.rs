@@ -5,8 +5,7 @@
 
 use core::ops::Range;
 
-use super::clip::{self, is_whole};
-use super::{Face, Hit, Standard, Truth, TruthFrame, ray};
+use super::{Face, Hit, Standard, Truth, TruthFrame, clip, ray};
 
 /// Margin in pixels around a face's bounding box in which it is looked for. The ray test is exact to 10⁻¹⁰ pixel, so
 /// this is more than enough.
@@ -75,24 +74,15 @@ impl<'a> Truth<'a> {
         if !body.shows(face.triangle, ray::is_turned(&corners)) {
             return None;
         }
-        let boxed = |points: &[[f64; 2]]| {
-            let ranges = [(0, self.screen.width), (1, self.screen.height)].map(|(axis, size)| {
-                let low = points.iter().map(|point| point[axis]).fold(f64::INFINITY, f64::min);
-                let high = points.iter().map(|point| point[axis]).fold(f64::NEG_INFINITY, f64::max);
-                // Centres lie at x + ½. Values from 0 to 4,096 survive the casts.
-                let first = libm::ceil(low - PAD - 0.5).clamp(0.0, f64::from(size)) as u16;
-                let end = (libm::floor(high + PAD - 0.5) + 1.0).clamp(0.0, f64::from(size)) as u16;
-                first..end
-            });
-            ranges.iter().all(|range| !range.is_empty()).then_some(ranges)
-        };
-        if is_whole(&self.eye, &corners) {
-            boxed(&corners.each_ref().map(|corner| self.eye.project(corner.seen)))
-        } else {
-            let left = clip::clip(&self.eye, &corners);
-            let points: Vec<[f64; 2]> = left.iter().map(|corner| self.eye.project(corner.seen)).collect();
-            boxed(&points)
-        }
+        let points = clip::outline(&self.eye, &corners);
+        let ranges = [(0, self.screen.width), (1, self.screen.height)].map(|(axis, size)| {
+            let (low, high) = clip::bounds(&points, axis);
+            // Centres lie at x + ½. Values from 0 to 4,096 survive the casts.
+            let first = libm::ceil(low - PAD - 0.5).clamp(0.0, f64::from(size)) as u16;
+            let end = (libm::floor(high + PAD - 0.5) + 1.0).clamp(0.0, f64::from(size)) as u16;
+            first..end
+        });
+        ranges.iter().all(|range| !range.is_empty()).then_some(ranges)
     }
 }
 

@@ -137,14 +137,13 @@ fn sphere(
     let model = against(Standard::Lit, shiny, &[&linear, &phong], base)?;
     let triangles = matt[0].objects()[0].mesh().triangles().len();
     let seen = (off[0].pixels() + off[0].cover_errors) as f64 / matt.len() as f64;
-    let share = |of: usize| off[of].cover_errors as f64 / (off[of].pixels() + off[of].cover_errors).max(1) as f64;
     Ok(Sphere {
         triangles,
         // Half of a closed mesh's faces are turned toward the eye.
         pixels_of_each: seen / (triangles as f64 / 2.0),
         fine: off[0].errors(),
         whole: off[1].errors(),
-        wrong_faces: [share(0), share(1)],
+        wrong_faces: [0, 1].map(|of: usize| off[of].share_not_compared()),
         linear: model[0].errors(),
         phong: model[1].errors(),
         linear_time: times.median(Shading::Gouraud88Reseeded, scene),

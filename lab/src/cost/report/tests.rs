@@ -38,6 +38,11 @@ fn shading(shading: Shading, ratio: f64, gouraud: f64, lit: f64) -> ShadingRow {
     }
 }
 
+/// A row whose time cannot be distinguished from another's.
+fn tied(row: ShadingRow, with: Shading) -> ShadingRow {
+    ShadingRow { as_fast_as: vec![with], ..row }
+}
+
 fn budget(max_error: f64, within: f64, best: Option<(Shading, f64)>) -> BudgetRow {
     BudgetRow {
         max_error,
@@ -203,10 +208,9 @@ fn no_table_is_empty_and_no_pair_stands_twice() {
             assert!(next.descendants().any(|n| n.has_tag_name("tr")), "{:?}", heading.text());
         }
     }
-    let mut tied = study(vec![shading(Shading::Flat, 1.0, 9.0, 28.0), shading(Shading::Phong, 1.0, 9.0, 28.0)]);
-    tied.shadings[0].as_fast_as = vec![Shading::Phong];
-    tied.shadings[1].as_fast_as = vec![Shading::Flat];
-    for said in [html(&tied), text(&tied)] {
+    let row = |of, with| tied(shading(of, 1.0, 9.0, 28.0), with);
+    let both = study(vec![row(Shading::Flat, Shading::Phong), row(Shading::Phong, Shading::Flat)]);
+    for said in [html(&both), text(&both)] {
         assert!(said.contains("flat and phong") && !said.contains("phong and flat"), "{said}");
     }
 }
@@ -218,12 +222,7 @@ fn charts_say_which_way_is_better() {
     let document = parsed(&svg);
     let texts: Vec<&str> = document.descendants().filter_map(|n| n.text()).collect();
     assert!(texts.iter().any(|text| text.contains("better: down and left")), "{texts:?}");
-    let (_, script) = {
-        let page = html(&study);
-        let (page, script) = apart(&page);
-        (page, script.to_string())
-    };
-    assert!(script.contains("better: down and left"));
+    assert!(apart(&html(&study)).1.contains("better: down and left"));
 }
 
 #[test]
@@ -324,10 +323,6 @@ fn nothing_and_no_number_are_reported_too() {
 #[test]
 fn a_summary_is_true_of_any_figures() {
     use Shading::{Flat, Gouraud88, Gouraud88Reseeded, GouraudVintage, Phong};
-    let tied = |mut row: ShadingRow, with: Shading| {
-        row.as_fast_as = vec![with];
-        row
-    };
     let done_right = || shading(Gouraud88Reseeded, 1.0, 0.6, 14.6);
     let cases: Vec<(Vec<ShadingRow>, &str)> = vec![
         (
@@ -385,10 +380,6 @@ fn a_summary_is_true_of_any_figures() {
 #[test]
 fn the_first_screen_says_what_accuracy_costs() {
     use Shading::{Flat, Gouraud88, Phong};
-    let tied = |mut row: ShadingRow, with: Shading| {
-        row.as_fast_as = vec![with];
-        row
-    };
     let cases = [
         // The left one is flat shading, although another is faster.
         (
