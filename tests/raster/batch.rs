@@ -5,7 +5,7 @@ mod shapes;
 
 use std::fmt::Display;
 
-use crate::support::triangles::{rect, triangle, vertex};
+use crate::support::triangles::{drawn, drawn_by_the_oracle, rect, triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::internals::raster::effects::{Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource};
@@ -109,27 +109,22 @@ fn r4_long_batches_against_the_oracle() {
 
 #[test]
 fn small_triangles_are_the_oracles_with_every_kernel() {
-    const SIDE: i32 = 24;
+    const SIDE: u32 = 24;
     let mut random = Random::named("batches against the oracle");
     let mut pixels = 0;
     for _ in 0..20_000 {
         let reach = random.one_of(&[100, 300, 900, 2_000]);
         let vertices = small(&mut random, SIDE.into(), SIDE.into(), reach);
         let interpolation = interpolation(&mut random);
-        let mut expected = vec![None; (SIDE * SIDE) as usize];
-        for pixel in oracle::pixels(&vertices, interpolation, SIDE, SIDE) {
-            expected[(pixel.y * SIDE + pixel.x) as usize] = Some(pixel.byte);
-            pixels += 1;
-        }
+        let expected = drawn_by_the_oracle(&vertices, interpolation, SIDE, SIDE);
+        pixels += expected.iter().flatten().count();
         for kernel in Kernel::available() {
-            let on = |empty: u8| {
+            let drawn = drawn(|empty| {
                 let mut bytes = vec![empty; (SIDE * SIDE) as usize];
-                let frame = Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE as usize).expect("legal");
+                let frame = Frame::new(&mut bytes, SIDE, SIDE, SIDE as usize).expect("legal");
                 together(&mut Raster::new(frame).with_kernel(kernel), &[(vertices, interpolation)]);
                 bytes
-            };
-            let drawn: Vec<Option<u8>> =
-                on(0).into_iter().zip(on(1)).map(|(on_0, on_1)| (on_0 == on_1).then_some(on_0)).collect();
+            });
             assert_eq!(drawn, expected, "{kernel}, {interpolation:?}, {vertices:?}");
         }
     }

@@ -1,6 +1,6 @@
 //! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
 
-use crate::support::triangles::{contains, draw, edge_beside, rect, triangle, vertex};
+use crate::support::triangles::{clip_to, draw, drawn, drawn_by_the_oracle, edge_beside, rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::raster::reference::cover::SortedTriangle;
@@ -69,22 +69,16 @@ fn measure(vertices: &[Vertex; 3], width: u32, height: u32) -> Measured {
     let (low, high) = (*shades.iter().min().expect("three"), *shades.iter().max().expect("three"));
     let mut measured = Measured { off: vec![0.0; EXACT.len()], ..Measured::default() };
     for ((interpolation, _), worst) in EXACT.iter().copied().zip(&mut measured.off) {
-        let mut expected = vec![None; (width * height) as usize];
-        for pixel in oracle::pixels(vertices, interpolation, width as i32, height as i32) {
-            expected[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
-        }
+        let expected = drawn_by_the_oracle(vertices, interpolation, width, height);
         let (bound_n, bound_d) = oracle::bound(interpolation, width.into()).expect("a bound");
-        // With two backgrounds a drawn byte can be distinguished from an untouched one.
-        let on = |empty| draw(vertices, interpolation, width, height, None, empty);
-        let (on_0, on_1) = (on(0), on(1));
+        let drawn = drawn(|empty| draw(vertices, interpolation, width, height, None, empty));
         measured.covered = 0;
         for y in 0..height as usize {
             for x in 0..width as usize {
                 let place = y * width as usize + x;
-                let drawn = (on_0[place] == on_1[place]).then_some(on_0[place]);
-                measured.differ += u32::from(drawn != expected[place]);
-                assert_eq!(drawn, expected[place], "{interpolation:?} at ({x}, {y}) of {vertices:?}");
-                let Some(byte) = drawn.map(i128::from) else { continue };
+                measured.differ += u32::from(drawn[place] != expected[place]);
+                assert_eq!(drawn[place], expected[place], "{interpolation:?} at ({x}, {y}) of {vertices:?}");
+                let Some(byte) = drawn[place].map(i128::from) else { continue };
                 measured.covered += 1;
                 assert!((low + 128) >> 8 <= byte && byte <= (high + 128) >> 8, "range at ({x}, {y}) of {vertices:?}");
                 let exact = oracle::exact_shade(vertices, interpolation, oracle::centre(x as i32, y as i32));
@@ -243,12 +237,7 @@ fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
         let clip = rect(&mut random, WIDE, HEIGHT);
         for interpolation in interpolations() {
             let mut expected = draw(&vertices, interpolation, WIDE, HEIGHT, None, 0);
-            for (place, byte) in expected.iter_mut().enumerate() {
-                let (x, y) = (place as u32 % WIDE, place as u32 / WIDE);
-                if !contains(clip, x, y) {
-                    *byte = 0;
-                }
-            }
+            clip_to(&mut expected, WIDE, clip, 0);
             assert_eq!(draw(&vertices, interpolation, WIDE, HEIGHT, Some(clip), 0), expected, "{clip:?} {vertices:?}");
         }
     }
@@ -434,11 +423,11 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
         let frame = Frame::new(&mut bytes, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
         let depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         let mut raster = Raster::new(frame).with_depth(depth);
-        let mut drawn = DrawStats::default();
+        let mut counts = DrawStats::default();
         for vertices in &all {
-            drawn += raster.triangle(vertices, interpolation);
+            counts += raster.triangle(vertices, interpolation);
         }
-        assert_eq!((drawn.covered, drawn.pixels), (covered, written), "{all:?}");
+        assert_eq!((counts.covered, counts.pixels), (covered, written), "{all:?}");
         assert_eq!(bytes, expected, "{all:?}");
         assert_eq!(depths, nearest, "{all:?}");
     }
@@ -490,10 +479,9 @@ fn perspective_correct_shades(mut tried: Tried) {
             .fold((u16::MAX, 0), |(low, high), v| (low.min(v.shade().to_bits()), high.max(v.shade().to_bits())));
         // The shadings that are linear on the face, in turn.
         let (interpolation, more) = random.one_of(ON_THE_FACE);
-        let on = |empty| draw(&vertices, interpolation, WIDTH, HEIGHT, None, empty);
-        let (on_0, on_1) = (on(0), on(1));
-        for place in (0..on_0.len()).filter(|&place| on_0[place] == on_1[place]) {
-            let byte = on_0[place];
+        let bytes = drawn(|empty| draw(&vertices, interpolation, WIDTH, HEIGHT, None, empty));
+        for (place, byte) in bytes.into_iter().enumerate() {
+            let Some(byte) = byte else { continue };
             assert!((u32::from(low) + 128) >> 8 <= byte.into() && u32::from(byte) <= (u32::from(high) + 128) >> 8);
             let p = oracle::centre(place as i32 % WIDTH as i32, place as i32 / WIDTH as i32);
             let [a, b, c] = points;
@@ -565,13 +553,9 @@ fn a_depth_buffer_changes_no_byte_of_one_triangle() {
             continue;
         }
         // By the definition, some rows are reseeded and others are not.
-        let mut expected = vec![0; (width * height) as usize];
-        for pixel in oracle::pixels(&vertices, interpolation, width as i32, height as i32) {
-            let (x, y) = (pixel.x as u32, pixel.y as u32);
-            if (clip.x0..clip.x1).contains(&x) && y >= clip.y0 {
-                expected[(y * width + x) as usize] = pixel.byte;
-            }
-        }
+        let expected = drawn_by_the_oracle(&vertices, interpolation, width, height);
+        let mut expected: Vec<u8> = expected.into_iter().map(Option::unwrap_or_default).collect();
+        clip_to(&mut expected, width, clip, 0);
         assert!(plain.0 == expected, "{kernel}, {interpolation:?}: {vertices:?} in {clip:?}");
         reseeded += u32::from(breadth > 16_384);
     }

@@ -4,6 +4,7 @@ use mode13h::fixed::{I24F8, U8F8};
 use mode13h::raster::{Frame, Interpolation, Raster, Rect, Vertex};
 
 use mode13h_conformance::Random;
+use mode13h_conformance::oracle;
 
 pub fn vertex(x: i64, y: i64, shade: i64, depth: i64) -> Vertex {
     Vertex::new(
@@ -68,13 +69,18 @@ pub fn triangle(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
         if random.within(0, 1) == 0 { b.1 = a.1 } else { b.0 = a.0 }
     }
     [a, b, c].map(|(x, y)| {
-        let shade = match random.within(0, 3) {
-            0 => random.one_of(&[0, 0xFF00]),
-            _ => random.within(0, 0xFF00),
-        };
+        let shade = shade(random);
         let depth = random.log_uniform(30) as i64;
         vertex(x, y, shade, depth)
     })
+}
+
+/// A random shade, in one of four cases the least or the greatest.
+pub fn shade(random: &mut Random) -> i64 {
+    match random.within(0, 3) {
+        0 => random.one_of(&[0, 0xFF00]),
+        _ => random.within(0, 0xFF00),
+    }
 }
 
 /// A random part of a frame of `width × height` pixels, perhaps empty.
@@ -89,6 +95,34 @@ pub fn rect(random: &mut Random, width: u32, height: u32) -> Rect {
 
 pub fn contains(rect: Rect, x: u32, y: u32) -> bool {
     (rect.x0..rect.x1).contains(&x) && (rect.y0..rect.y1).contains(&y)
+}
+
+/// Removes what lies outside a rectangle from the bytes of a frame.
+pub fn clip_to(bytes: &mut [u8], width: u32, clip: Rect, empty: u8) {
+    for (place, byte) in (0..).zip(bytes) {
+        if !contains(clip, place % width, place / width) {
+            *byte = empty;
+        }
+    }
+}
+
+/// The bytes that are drawn, found by drawing over two backgrounds: what is equal on both was drawn.
+pub fn drawn(mut over: impl FnMut(u8) -> Vec<u8>) -> Vec<Option<u8>> {
+    over(0).into_iter().zip(over(1)).map(|(on_0, on_1)| (on_0 == on_1).then_some(on_0)).collect()
+}
+
+/// The bytes that the oracle draws.
+pub fn drawn_by_the_oracle(
+    vertices: &[Vertex; 3],
+    interpolation: Interpolation,
+    width: u32,
+    height: u32,
+) -> Vec<Option<u8>> {
+    let mut bytes = vec![None; (width * height) as usize];
+    for pixel in oracle::pixels(vertices, interpolation, width as i32, height as i32) {
+        bytes[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
+    }
+    bytes
 }
 
 /// What a triangle draws into a frame full of `empty`, without a depth buffer.

@@ -1,7 +1,7 @@
 //! Convex polygons by the table of rows, against an i128 oracle of the same definition; and why faces are split into
 //! triangles instead (N8).
 
-use crate::support::triangles::{contains, rect, vertex};
+use crate::support::triangles::{self, rect, vertex};
 use crate::support::tried::Tried;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h_conformance::Random;
@@ -99,11 +99,14 @@ fn check(vertices: &[Vertex]) -> u32 {
     let mut covered = 0;
     for (interpolation, reseed) in [(Interpolation::GouraudReseeded, RESEED), (Interpolation::Gouraud, 1 << 20)] {
         let expected = expected(vertices, reseed);
-        let on = |empty| Sheet { empty, ..Sheet::WHOLE }.draw(vertices, interpolation).expect("convex");
-        let ((on_0, drawn), (on_1, _)) = (on(0), on(1));
+        let mut counts = DrawStats::default();
+        let drawn = triangles::drawn(|empty| {
+            let (bytes, drawn) = Sheet { empty, ..Sheet::WHOLE }.draw(vertices, interpolation).expect("convex");
+            counts = drawn;
+            bytes
+        });
         covered = 0;
-        for (place, expected) in expected.iter().enumerate() {
-            let is = (on_0[place] == on_1[place]).then_some(on_0[place]);
+        for (place, (is, expected)) in drawn.into_iter().zip(&expected).enumerate() {
             let (x, y) = (place % WIDTH as usize, place / WIDTH as usize);
             assert_eq!(is, *expected, "{interpolation:?} at ({x}, {y}) of {vertices:?}");
             if let Some(byte) = is {
@@ -111,7 +114,7 @@ fn check(vertices: &[Vertex]) -> u32 {
                 assert!(range.contains(&u16::from(byte)), "range at ({x}, {y}) of {vertices:?}");
             }
         }
-        assert_eq!((drawn.covered, drawn.pixels), (covered, covered));
+        assert_eq!((counts.covered, counts.pixels), (covered, covered));
     }
     let (flat, _) = Sheet::WHOLE.draw(vertices, Interpolation::Flat(7)).expect("convex");
     assert_eq!(flat.iter().filter(|byte| **byte == 7).count() as u32, covered, "flat covers the same");
@@ -159,16 +162,7 @@ fn convex(random: &mut Random) -> Vec<(i64, i64)> {
 }
 
 fn shaded(random: &mut Random, corners: &[(i64, i64)]) -> Vec<Vertex> {
-    corners
-        .iter()
-        .map(|&(x, y)| {
-            let shade = match random.within(0, 3) {
-                0 => random.one_of(&[0, 0xFF00]),
-                _ => random.within(0, 0xFF00),
-            };
-            vertex(x, y, shade, 0)
-        })
-        .collect()
+    corners.iter().map(|&(x, y)| vertex(x, y, triangles::shade(random), 0)).collect()
 }
 
 #[test]
@@ -207,12 +201,7 @@ fn r8_polygons_clipped_and_in_bands() {
         let rows_each = random.within(1, HEIGHT.into()) as u32;
         for interpolation in [Interpolation::GouraudReseeded, Interpolation::Gouraud, Interpolation::Flat(9)] {
             let (mut whole, _) = Sheet::WHOLE.draw(&vertices, interpolation).expect("convex");
-            for (place, byte) in whole.iter_mut().enumerate() {
-                let (x, y) = (place as u32 % WIDTH, place as u32 / WIDTH);
-                if !contains(clip, x, y) {
-                    *byte = 0;
-                }
-            }
+            triangles::clip_to(&mut whole, WIDTH, clip, 0);
             let sheet = Sheet { clip, rows_each, empty: 0 };
             let (part, _) = sheet.draw(&vertices, interpolation).expect("convex");
             assert_eq!(part, whole, "{clip:?}, bands of {rows_each}, {vertices:?}");
@@ -339,12 +328,11 @@ fn n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split() {
     let mut tried = Tried::new("n8_slip_6_a_turned_quads_shade_depends_on_the_turn_unless_it_is_split", 200);
     let mut random = Random::named("n8");
     let draw = |paint: &dyn Fn(Frame<'_>)| -> Vec<Option<u8>> {
-        let on = |empty| {
+        triangles::drawn(|empty| {
             let mut bytes = vec![empty; SIDE * SIDE];
             paint(Frame::new(&mut bytes, SIDE as u32, SIDE as u32, SIDE).expect("legal"));
             bytes
-        };
-        on(0).into_iter().zip(on(1)).map(|(a, b)| (a == b).then_some(a)).collect()
+        })
     };
     let as_table = |vertices: &[Vertex]| {
         draw(&|mut frame| {
