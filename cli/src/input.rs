@@ -15,8 +15,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, Weight, shapes};
 use mode13h::palette::{Palette, builtin};
-use mode13h::scene::{Camera, Object, Scene, Shared, UpAxis};
-use mode13h::texture::Texture;
+use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h_assets::look::Look;
 use mode13h_assets::model::{self, Playback, with_textures};
 use mode13h_assets::model_file::{self, Embedded, Format, ModelFileError, Options, Rig};
@@ -63,7 +62,8 @@ impl Model {
         if self.is_shape {
             return Ok(Turntable::of_shape(self.mesh, up));
         }
-        let textures = textures(&self.mesh, &self.textures);
+        let (textures, warnings) = model::textures(&self.mesh, &self.textures);
+        warnings.iter().for_each(warn);
         let object = with_textures(Object::new(self.mesh), &textures);
         let (lights, camera) = if up.is_none() { (self.lights, self.camera) } else { (Vec::new(), None) };
         let camera = camera.filter(|_| !has_camera);
@@ -267,14 +267,6 @@ fn format_of_contents(path: &Path) -> Option<Format> {
     Format::of_bytes(&bytes)
 }
 
-/// Reads the texture of each surface of a model, if it names one that can be read and the model has texture
-/// coordinates. Warnings go to standard error, a line each. Files named by several surfaces are read once.
-fn textures(mesh: &Mesh, embedded: &Embedded) -> Vec<Option<Shared<Texture>>> {
-    let (textures, warnings) = model::textures(mesh, embedded);
-    warnings.iter().for_each(warn);
-    textures
-}
-
 /// Loads a model, with a progress bar if that takes longer than a moment and standard error is a terminal.
 fn load(path: &Path, options: &Options) -> Result<model_file::Loaded, ModelFileError> {
     const MOMENT: Duration = Duration::from_millis(300);
@@ -323,11 +315,6 @@ fn reading() -> ProgressStyle {
         .unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
-/// The names of the palettes that are compiled in.
-fn palette_names() -> Vec<&'static str> {
-    builtin::ALL.iter().map(|builtin| builtin.name).collect()
-}
-
 /// The extensions of palette files.
 pub(crate) fn palette_extensions() -> String {
     let mut extensions: Vec<String> = Vec::new();
@@ -363,7 +350,7 @@ pub(crate) fn palette(words: &OsStr) -> Result<(String, Palette), Failure> {
     }
     let palette = palette_file::load(path).map_err(|error| match &error.kind {
         LoadErrorKind::Read(read) if read.kind() == io::ErrorKind::NotFound => {
-            let names = palette_names();
+            let names: Vec<&str> = builtin::ALL.iter().map(|builtin| builtin.name).collect();
             let near = words.to_str().and_then(|word| typo::nearest(word, names.iter().copied().chain([AUTO])));
             let known = near.map_or_else(
                 || format!("built-in palettes are {}", names.join(", ")),

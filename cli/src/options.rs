@@ -239,16 +239,16 @@ impl Drawing {
     /// Reads INPUT with these options.
     pub(crate) fn input(&self, words: &OsStr) -> Result<Input, Failure> {
         let mut input = input::input(words, &Options { crease: self.crease })?;
-        match &mut input {
-            Input::Scene { .. } if self.crease.is_some() => {
-                Err(Failure::words("--crease is for models; in a scene, each model has a key for it"))
+        let given = [("crease", self.crease.is_some()), ("clip", self.clip.is_some()), ("up", self.up.is_some())];
+        match (&mut input, &self.clip, given.into_iter().find(|(_, is_given)| *is_given)) {
+            (Input::Scene { .. }, _, Some((option, _))) => {
+                return Err(Failure::words(format!(
+                    "--{option} is for models; in a scene, each model has a key for it"
+                )));
             }
-            Input::Scene { .. } if self.clip.is_some() => {
-                Err(Failure::words("--clip is for models; in a scene, each model has a key for it"))
-            }
-            Input::Model(model) => self.clip.as_deref().map_or(Ok(()), |clip| model.choose(clip)),
-            Input::Scene { .. } => Ok(()),
-        }?;
+            (Input::Model(model), Some(clip), _) => model.choose(clip)?,
+            _ => {}
+        }
         Ok(input)
     }
 
@@ -258,7 +258,7 @@ impl Drawing {
         let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
         let mut stage = self.stage(input)?;
         if is_reframed {
-            stage.frame_still();
+            stage.frames_still = true;
         }
         Ok(stage)
     }
@@ -275,9 +275,6 @@ impl Drawing {
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
-            Input::Scene { .. } if self.up.is_some() => {
-                return Err(Failure::words("--up is for models; in a scene, each model has a key for it"));
-            }
             Input::Scene { scene, playbacks, .. } => {
                 let auto = scene.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
@@ -285,7 +282,7 @@ impl Drawing {
             }
         };
         if let Some(zoom) = self.zoom {
-            stage.set_zoom(zoom);
+            stage.zoom = zoom;
         }
         if let Some((eye, target)) = self.camera {
             stage.set_camera(eye, target);
@@ -294,7 +291,7 @@ impl Drawing {
             stage.set_background(background);
         }
         if self.pipeline.dither.is_some() || self.pipeline.no_dither {
-            stage.set_dither(self.pipeline.dither);
+            stage.dither = Some(self.pipeline.dither);
         }
         if let Some(shades) = self.pipeline.tessellation {
             stage.scene.settings.tessellation = Some(shades);

@@ -61,12 +61,12 @@ pub(crate) enum Background {
 pub(crate) struct Turntable {
     pub(crate) scene: Scene,
     shown: Shown,
-    /// True if the camera frames each pose of the model by itself, not the whole turn.
-    frames_still: bool,
+    /// True if the camera frames each pose of the model by itself, for single pictures, not the whole turn.
+    pub(crate) frames_still: bool,
     /// The camera's own place.
     camera: Camera,
     /// Enlargement, independent of the pose.
-    zoom: f64,
+    pub(crate) zoom: f64,
     /// The objects' materials, whatever the palette.
     materials: Vec<Vec<Material>>,
     /// True if their images are shown.
@@ -77,8 +77,9 @@ pub(crate) struct Turntable {
     own_dither: Option<DitherPattern>,
     /// The models in the scene that move by themselves.
     playbacks: Vec<Playback>,
-    /// The dither, or none, that the user asked for, if any; it overrides scene and palette.
-    dither: Option<Option<DitherPattern>>,
+    /// The dither, or none, that the user asked for, if any; it overrides scene and palette from the next
+    /// [`set_colors`](Self::set_colors) on.
+    pub(crate) dither: Option<Option<DitherPattern>>,
     /// The look whose colours an automatic palette gets.
     look: Option<Look>,
     /// The automatic palette, made when first asked for.
@@ -230,16 +231,6 @@ impl Turntable {
         }
     }
 
-    /// Frames a model by its pose in each picture instead of over the whole turn, for single pictures.
-    pub(crate) fn frame_still(&mut self) {
-        self.frames_still = true;
-    }
-
-    /// Enlarges the picture by this factor.
-    pub(crate) fn set_zoom(&mut self, zoom: f64) {
-        self.zoom = zoom;
-    }
-
     /// Looks from a fixed point at a fixed point.
     pub(crate) fn set_camera(&mut self, eye: Vec3, target: Vec3) {
         let near = self.camera.near.min(Camera::near_for(eye.distance(target)));
@@ -255,11 +246,6 @@ impl Turntable {
             Background::Entry(entry) => (entry, None),
             Background::Color(color) => (Palette::default().nearest(color), Some(color)),
         };
-    }
-
-    /// Sets the dither, from the next [`set_colors`](Self::set_colors) on.
-    pub(crate) fn set_dither(&mut self, dither: Option<DitherPattern>) {
-        self.dither = Some(dither);
     }
 
     /// Sets the look that automatic palettes are rounded for.

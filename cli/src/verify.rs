@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use mode13h::export::{Picture, PixelShape, Png, Scale};
+use mode13h::export::{Picture, Png, Scale};
 use mode13h::palette::Rgb;
 use mode13h::render::Renderer;
 use mode13h::span::Kernel;
@@ -185,16 +185,7 @@ fn picture(options: &Options, chosen: &[Frame], by_kernel: &[ByKernel]) -> Resul
     let rows =
         (0..is.height as usize).flat_map(|y| panels.iter().flat_map(move |panel| &panel[y * width..(y + 1) * width]));
     let pixels: Vec<u8> = rows.copied().collect();
-    let width = width * panels.len();
-    let shape = PixelShape::default();
-    let picture = Picture {
-        pixels: &pixels,
-        width,
-        height: is.height as usize,
-        pitch: width,
-        palette: is.palette.colors(),
-        shape,
-    };
+    let picture = Picture::of(&pixels, width * panels.len(), &is.palette);
     output::file(&path, || Png { scale: Scale::One, rgb: false }.save(&picture, &path))?;
     Ok(Some(path))
 }
