@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use crate::floor::{HEIGHT, WIDTH};
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
-use crate::support::scenes::frame_by;
+use crate::support::scenes::{by_path as renderer, frame_by};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -19,12 +19,6 @@ use mode13h::settings::{Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
-
-fn renderer(path: VertexPath) -> Renderer {
-    let mut renderer = Renderer::new();
-    renderer.settings.vertex_path = Some(path);
-    renderer
-}
 
 fn frame(renderer: &mut Renderer, scene: &Scene) -> Vec<u8> {
     let (bytes, stats) = frame_by(renderer, scene);

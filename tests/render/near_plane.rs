@@ -9,14 +9,8 @@ use mode13h::settings::VertexPath;
 use mode13h_conformance::Random;
 
 use crate::floor::{HEIGHT, WIDTH, counts_by, floor, scene};
+use crate::support::scenes::by_path as renderer;
 use crate::support::tried::Tried;
-
-/// A renderer with this vertex path.
-fn renderer(path: VertexPath) -> Renderer {
-    let mut renderer = Renderer::new();
-    renderer.settings.vertex_path = Some(path);
-    renderer
-}
 
 /// Checks that floors of these sizes, in this many squares a side, cover exactly the lower half of the picture, once.
 pub(crate) fn floors_are_closed(mut tried: Tried, path: VertexPath, reaches: &[f32], squares: &[u32]) {

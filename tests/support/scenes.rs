@@ -9,7 +9,7 @@ use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
 use mode13h::render::{Renderer, Stats};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Scene, Shared};
-use mode13h::settings::{DitherPattern, Settings, Shading};
+use mode13h::settings::{DitherPattern, Settings, Shading, VertexPath};
 use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 
@@ -19,6 +19,13 @@ use mode13h_conformance::Random;
 pub fn shaded(shading: Shading) -> Renderer {
     let mut renderer = Renderer::new();
     renderer.settings.accuracy = Some(shading.into());
+    renderer
+}
+
+/// A renderer with this vertex path.
+pub fn by_path(path: VertexPath) -> Renderer {
+    let mut renderer = Renderer::new();
+    renderer.settings.vertex_path = Some(path);
     renderer
 }
 

@@ -43,11 +43,7 @@ fn rotation(tried: &mut Tried, path: VertexPath) {
         let frame = Frame::new(bytes, WIDTH, HEIGHT, WIDTH as usize).expect("a legal frame");
         renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
     }
-    let fresh = || {
-        let mut renderer = Renderer::new();
-        renderer.settings.vertex_path = Some(path);
-        renderer
-    };
+    let fresh = || crate::support::scenes::by_path(path);
     let mesh = Shared::new(shapes::torus(8, 6));
     let (mut renderer, mut scene) = (fresh(), crate::support::scenes::framed(mesh.clone()));
     let mut bytes = [0; (WIDTH * HEIGHT) as usize];

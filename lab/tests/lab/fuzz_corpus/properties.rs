@@ -1,6 +1,10 @@
 //! Properties that hold for every parser, whatever its input. There is one function per parser, shared by the fuzzer
 //! (`fuzz/fuzz_targets`) and the corpora (`lab/tests/lab/fuzz_corpus.rs`); each panics if its property fails.
 
+#[path = "../../../../tests/support/film.rs"]
+#[expect(dead_code, reason = "other tests use the rest")]
+mod film;
+
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::io::{self, BufRead, BufReader};
@@ -522,24 +526,10 @@ pub fn gif(bytes: &[u8]) {
         let shown = pixels.iter().map(|pixel| palette[usize::from(*pixel)]).collect();
         put(&mut expected, shown, ends);
     }
-    let mut options = gif::DecodeOptions::new();
-    options.set_color_output(gif::ColorOutput::Indexed);
-    options.check_frame_consistency(true);
-    let mut decoder = options.read_info(&file[..]).expect("a GIF");
-    let table = |table: &[u8]| -> Vec<Rgb> { table.chunks_exact(3).map(|c| Rgb::new(c[0], c[1], c[2])).collect() };
-    let of_film = table(decoder.global_palette().expect("a palette of the film"));
-    let (mut canvas, mut ends) = (vec![Rgb::BLACK; width * height], 0);
-    let mut shown: Vec<(Vec<Rgb>, u64)> = Vec::new();
-    while let Some(frame) = decoder.read_next_frame().expect("an image") {
-        let own = frame.palette.as_deref().map(table);
-        let (left, top, columns) = (usize::from(frame.left), usize::from(frame.top), usize::from(frame.width));
-        for (at, index) in frame.buffer.iter().enumerate().filter(|(_, index)| Some(**index) != frame.transparent) {
-            canvas[(top + at / columns) * width + left + at % columns] =
-                own.as_ref().unwrap_or(&of_film)[usize::from(*index)];
-        }
-        assert_eq!(frame.dispose, gif::DisposalMethod::Keep);
-        ends += u64::from(frame.delay);
-        put(&mut shown, canvas.clone(), ends);
+    let (mut shown, mut ends) = (Vec::new(), 0);
+    for image in film::decode(&file).images {
+        ends += image.delay;
+        put(&mut shown, image.shown, ends);
     }
     assert!(shown == expected, "{width} × {height}, {} frames a second", rate.frames_per_second());
 }
