@@ -5,12 +5,14 @@ mod far;
 use crate::floor::{HEIGHT, WIDTH, counts_by, scene};
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
+use crate::support::scenes::triangles_by;
 use crate::support::tried::Tried;
+use crate::support::vector::{cross, dot};
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Frame, Vertex};
-use mode13h::render::{Renderer, Screen};
+use mode13h::render::Renderer;
 use mode13h::settings::{HiddenSurfaces, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
@@ -227,10 +229,7 @@ fn edges_of_far_triangles(mut tried: Tried) {
         });
         let lines: [Line; 3] = [0, 1, 2].map(|i| [projected[i].clone(), projected[(i + 1) % 3].clone()]);
         let mesh = Mesh::new(corners.to_vec(), vec![[0, 1, 2]]).expect("a mesh");
-        let mut parts = Vec::new();
-        Renderer::new()
-            .for_each_triangle(&scene(mesh), Screen::MODE_13H, |vertices, _| parts.push(*vertices))
-            .expect("a legal scene");
+        let parts = triangles_by(&mut Renderer::new(), &scene(mesh));
         for ends in outline(&parts).into_iter().filter_map(on_screen) {
             // One of the three lines is near both ends.
             let off = lines.iter().map(|line| distance(ends[0], line).max(distance(ends[1], line)));
@@ -275,10 +274,7 @@ fn c2_a_corner_passing_through_the_near_plane() {
         let mut vga = Vga::new();
         let mut renderer = Renderer::new();
         renderer.draw(&scene, &mut vga).expect("a legal scene");
-        let mut parts = Vec::new();
-        renderer
-            .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| parts.push(*vertices))
-            .expect("a legal scene");
+        let parts = triangles_by(&mut renderer, &scene);
         // The light at the corners: ka·Ia + kd·n·l.
         let material = &scene.objects()[0].materials[0];
         let shades = normals.map(|normal| {
@@ -297,14 +293,9 @@ fn c2_a_corner_passing_through_the_near_plane() {
         }
         let truth = |x: f64, y: f64| {
             let ray = [(x - 160.0) / fx, -(y - 100.0) / fy, -1.0];
-            let cross = |p: [f64; 3], q: [f64; 3]| {
-                [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
-            };
-            let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
             let [a, b, c] = corners;
             let weights = [dot(ray, cross(b, c)), dot(ray, cross(c, a)), dot(ray, cross(a, b))];
-            (weights[0] * shades[0] + weights[1] * shades[1] + weights[2] * shades[2])
-                / (weights[0] + weights[1] + weights[2])
+            dot(weights, shades) / (weights[0] + weights[1] + weights[2])
         };
         let truth = (0..WIDTH * HEIGHT).map(|i| truth((i % WIDTH) as f64 + 0.5, (i / WIDTH) as f64 + 0.5)).collect();
         let now = Step { bytes: vga.pixels().to_vec(), edges: outline(&parts), truth };

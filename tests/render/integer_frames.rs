@@ -5,14 +5,14 @@ use std::f64::consts::TAU;
 use crate::floor::{HEIGHT, WIDTH};
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
-use crate::support::scenes::{by_path as renderer, frame_by};
+use crate::support::scenes::{by_path as renderer, frame_by, triangles_by};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::Effect;
-use mode13h::raster::{Frame, Vertex};
+use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
 use mode13h::settings::{Shading, VertexPath};
@@ -60,9 +60,7 @@ fn vertex_bound(scene: &Scene) -> f64 {
 fn compare(scene: &Scene, name: &str) -> (u64, u64) {
     let off = vertex_bound(scene);
     assert!(off < 2.0 / 256.0, "{name}: 1/128 pixel is the bound: {off}");
-    let mut triangles: Vec<[Vertex; 3]> = Vec::new();
-    let screen = Screen::MODE_13H;
-    renderer(VertexPath::Float).for_each_triangle(scene, screen, |v, _| triangles.push(*v)).expect("a legal scene");
+    let triangles = triangles_by(&mut renderer(VertexPath::Float), scene);
     let (float, integer) =
         (frame(&mut renderer(VertexPath::Float), scene), frame(&mut renderer(VertexPath::Integer), scene));
 

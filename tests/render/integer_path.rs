@@ -1,6 +1,7 @@
 //! The integer vertex path against naive oracles, and against the f32 path.
 
 use crate::support::tried::Tried;
+use crate::support::vector::{cross, dot, length, sub, unit};
 use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
@@ -113,12 +114,9 @@ fn n6_averaged_normals_have_length_1() {
             let mut faces = 0;
             for t in triangles.iter().filter(|t| t.contains(&(vertex as u16))) {
                 let [a, b, c] = t.map(|i| real(positions[usize::from(i)]));
-                let (u, v) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
-                let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-                let length = n.iter().map(|c| c * c).sum::<f64>().sqrt();
-                if length > 0.0 {
+                if let Some(normal) = unit(cross(sub(b, a), sub(c, a))) {
                     faces += 1;
-                    sum = [0, 1, 2].map(|i| sum[i] + n[i] / length);
+                    sum = [0, 1, 2].map(|i| sum[i] + normal[i]);
                 }
             }
             let length = sum.iter().map(|c| c * c).sum::<f64>().sqrt();
@@ -291,19 +289,6 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
     assert!(compared > 10_000, "{compared} triangles were compared");
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn normalised(v: [f64; 3]) -> [f64; 3] {
-    let length = dot(v, v).sqrt();
-    v.map(|c| c / length)
-}
-
 /// Arbitrary camera, placement and mesh: every vertex is where f64 says, to within the rounding of the matrix to 16.16
 /// and of the transformed vertex to 1/65,536.
 #[test]
@@ -326,13 +311,13 @@ fn vertices_are_where_f64_has_them() {
         let position = [0, 1, 2].map(|i| target[i] + any(&mut random, 300 * 65_536));
 
         let [e, t, u] = [eye, target, up].map(|v| real(bits(v)));
-        let forward = normalised([0, 1, 2].map(|i| t[i] - e[i]));
-        let right = cross(forward, normalised(u));
+        let forward = unit(sub(t, e)).expect("two places");
+        let right = cross(forward, unit(u).expect("a direction"));
         if dot(right, right) < 0.01 {
             // If up points along the view, little more than rounding is left of it.
             continue;
         }
-        let right = normalised(right);
+        let right = unit(right).expect("not along the view");
         let down = cross(forward, right);
         let focal = [330.0, 275.0];
         let lens = Lens::with_focal_lengths(320, 200, focal.map(|f| I16F16::from_int(f as i16))).expect("legal");
@@ -359,7 +344,6 @@ fn vertices_are_where_f64_has_them() {
             let c = [0, 1, 2].map(|i| dot(rows[i], p) + far[i]);
             // The matrix: half a unit of each entry, and a hair, times at most what the scale's mantissa
             // makes of 1. The vertex and the position: half a unit each. The axes and the turn: 2⁻²⁷.
-            let length = |v: [f64; 3]| dot(v, v).sqrt();
             let sum = p.iter().map(|c| c.abs()).sum::<f64>();
             let off = (0.51 * sum + 1.0) / 65_536.0 + (length(p) + length(far)) / 134_217_728.0;
             ([right, down, forward].map(|axis| dot(axis, c)), off)

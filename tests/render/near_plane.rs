@@ -3,14 +3,16 @@
 use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::Mesh;
-use mode13h::render::{Renderer, Screen};
+use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::settings::VertexPath;
 use mode13h_conformance::Random;
 
 use crate::floor::{HEIGHT, WIDTH, counts_by, floor, scene};
 use crate::support::scenes::by_path as renderer;
+use crate::support::scenes::triangles_by;
 use crate::support::tried::Tried;
+use crate::support::vector::{cross, dot, sub};
 
 /// Checks that floors of these sizes, in this many squares a side, cover exactly the lower half of the picture, once.
 pub(crate) fn floors_are_closed(mut tried: Tried, path: VertexPath, reaches: &[f32], squares: &[u32]) {
@@ -108,10 +110,6 @@ pub(crate) fn the_visible_part_is_hit(mut tried: Tried, path: VertexPath) {
 /// Returns whether the ray from the origin hits the triangle beyond the near plane. `ray`'s z is −1, so its parameter
 /// is the distance along the view.
 fn hit(a: [f64; 3], b: [f64; 3], c: [f64; 3], ray: [f64; 3]) -> bool {
-    let sub = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
-    let cross =
-        |p: [f64; 3], q: [f64; 3]| [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
-    let dot = |p: [f64; 3], q: [f64; 3]| p[0] * q[0] + p[1] * q[1] + p[2] * q[2];
     let (u, v, w) = (dot(ray, cross(a, b)), dot(ray, cross(b, c)), dot(ray, cross(c, a)));
     let normal = cross(sub(b, a), sub(c, a));
     let along = dot(normal, a) / dot(normal, ray);
@@ -158,8 +156,8 @@ fn cuts_on_the_near_plane(
         }
     }
     let mut cuts = 0;
-    let mut parts = Vec::new();
-    renderer.for_each_triangle(scene, Screen::MODE_13H, |vertices, _| parts.extend(*vertices)).expect("a legal scene");
+    let parts = triangles_by(renderer, scene);
+    let parts = parts.as_flattened();
     // From behind a face is dark.
     let is_dark = parts.iter().all(|v| v.shade().to_bits() == 0);
     for v in parts.iter().filter(|v| v.depth() == 1 << 30 && !is_dark) {

@@ -2,7 +2,8 @@
 
 use std::collections::{HashMap, HashSet};
 
-use crate::support::scenes::{frame, frame_by, framed, shaded};
+use crate::floor::counts_by;
+use crate::support::scenes::{frame, frame_by, framed, shaded, triangles_by};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -104,13 +105,7 @@ fn r12_walls_that_are_split_are_closed() {
         clipped += usize::from(cut > 0);
         let loops = outlines(&parts);
         assert!(loops.len() <= 1, "{} outlines of {} triangles", loops.len(), parts.len());
-        let mut counts = vec![0_u32; mode13h::vga::Vga::SHOWN];
-        for corners in &parts {
-            let clip = mode13h::raster::Rect { x0: 0, y0: 0, x1: 320, y1: 200 };
-            mode13h::internals::raster::reference::cover::SortedTriangle::new(corners).rows(320, clip, |row| {
-                (row.x0..row.x1).for_each(|x| counts[(row.y * 320 + x) as usize] += 1);
-            });
-        }
+        let (counts, _) = counts_by(&mut Renderer::new(), &scene);
         let outline = loops.first().cloned().unwrap_or_default();
         for y in 0..200 {
             for x in 0..320 {
@@ -252,12 +247,8 @@ fn n3_opposite_normals_at_two_ends_of_an_edge() {
             let [one, other, to_eye] = [axis, -axis, Vec3::Z].map(|normal| draw(&scene([normal; 3])));
             let scene = scene([axis, -axis, third as f32 * axis]);
             let bytes = draw(&scene);
-            let mut corners = None;
             let mut renderer = Renderer::new();
-            renderer
-                .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| corners = Some(*vertices))
-                .expect("a legal scene");
-            let corners = corners.expect("the face, whole");
+            let corners = *triangles_by(&mut renderer, &scene).last().expect("the face, whole");
             let mut covered = vec![false; bytes.len()];
             for pixel in oracle::pixels(&corners, Interpolation::Flat(0), 320, 200) {
                 covered[(pixel.y * 320 + pixel.x) as usize] = true;

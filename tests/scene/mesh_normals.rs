@@ -4,6 +4,7 @@
 use std::f32::consts::PI;
 
 use crate::support::tried::Tried;
+use crate::support::vector::{self, wide};
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::Light;
@@ -398,13 +399,11 @@ fn naive_normal(mesh: &Mesh, vertex: usize, weight: Weight) -> Option<[f64; 3]> 
             if p[i] != here {
                 continue;
             }
-            let edge = |q: Vec3| [0, 1, 2].map(|k| f64::from(q[k]) - f64::from(here[k]));
-            let (u, v) = (edge(p[(i + 1) % 3]), edge(p[(i + 2) % 3]));
-            let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-            let norm = |v: [f64; 3]| (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt();
-            let area = norm(n);
-            let sine: f64 = area / (norm(u) * norm(v));
-            let cosine = (u[0] * v[0] + u[1] * v[1] + u[2] * v[2]) / (norm(u) * norm(v));
+            let [u, v] = [1, 2].map(|next| vector::sub(wide(p[(i + next) % 3]), wide(here)));
+            let n = vector::cross(u, v);
+            let area = vector::length(n);
+            let sine: f64 = area / (vector::length(u) * vector::length(v));
+            let cosine = vector::dot(u, v) / (vector::length(u) * vector::length(v));
             let factor = match weight {
                 Weight::Count => 1.0,
                 Weight::Area => area,
@@ -414,7 +413,7 @@ fn naive_normal(mesh: &Mesh, vertex: usize, weight: Weight) -> Option<[f64; 3]> 
             total += factor;
         }
     }
-    let norm = (sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]).sqrt();
+    let norm = vector::length(sum);
     (norm > total / f64::from(1 << 19)).then(|| sum.map(|c| c / norm))
 }
 

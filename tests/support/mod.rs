@@ -16,4 +16,6 @@ pub mod scenes;
 pub mod shipped;
 pub mod triangles;
 pub mod tried;
+#[cfg(feature = "alloc")]
+pub mod vector;
 pub mod workspace;

@@ -7,7 +7,8 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Blend, Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::palette::{Rgb, builtin};
-use mode13h::render::{Renderer, Stats};
+use mode13h::raster::Vertex;
+use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::{Camera, Fog, Object, PaletteAnimation, Scene, Shared};
 use mode13h::settings::{DitherPattern, Settings, Shading, VertexPath};
 use mode13h::texture::Texture;
@@ -34,6 +35,14 @@ pub fn frame_by(renderer: &mut Renderer, scene: &Scene) -> (Vec<u8>, Stats) {
     let mut vga = Vga::new();
     let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
     (vga.pixels().to_vec(), stats)
+}
+
+/// The triangles that the raster gets of a scene.
+pub fn triangles_by(renderer: &mut Renderer, scene: &Scene) -> Vec<[Vertex; 3]> {
+    let mut triangles = Vec::new();
+    let each = |vertices: &[Vertex; 3], _| triangles.push(*vertices);
+    renderer.for_each_triangle(scene, Screen::MODE_13H, each).expect("a legal scene");
+    triangles
 }
 
 /// The frame of a new renderer.

@@ -2,15 +2,16 @@
 
 mod floats;
 
+use crate::support::scenes::triangles_by;
 use crate::support::shaded;
 use crate::support::tried::Tried;
+use crate::support::vector::{Vector, dot, sub, unit, wide};
 use mode13h::Angle;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::glam::Vec3;
 use mode13h::light::{Cone, Light, Material, RampChoice};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::builtin;
-use mode13h::raster::Vertex;
 use mode13h::render::{RenderError, Renderer, Screen};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::settings::Shading;
@@ -33,10 +34,8 @@ fn shade(normal: Vec3, material: Material, ambient: f32, lights: &[Light]) -> U8
     for &light in lights {
         scene.add_light(light);
     }
-    let mut shades = Vec::new();
-    Renderer::new()
-        .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| shades.extend(vertices.map(|v: Vertex| v.shade())))
-        .expect("a legal scene");
+    let triangles = triangles_by(&mut Renderer::new(), &scene);
+    let shades: Vec<U8F8> = triangles.as_flattened().iter().map(|v| v.shade()).collect();
     assert_eq!(shades.len(), 3);
     assert!(shades.iter().all(|&shade| shade == shades[0]), "{shades:?}");
     shades[0]
@@ -99,29 +98,9 @@ fn n5_a_thousand_lights_of_any_strength_are_clamped_once() {
     assert_eq!(shade(Vec3::Z, material(f32::MAX, 1.0), f32::MIN, &[]), U8F8::from_bits(0));
 }
 
-type Wide = [f64; 3];
-
-fn wide(v: Vec3) -> Wide {
-    v.to_array().map(f64::from)
-}
-
-fn sub(a: Wide, b: Wide) -> Wide {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Wide, b: Wide) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// The unit vector; `None` for the zero vector.
-fn unit(v: Wide) -> Option<Wide> {
-    let length = dot(v, v).sqrt();
-    (length > 0.0).then(|| v.map(|c| c / length))
-}
-
 /// The unclamped intensity of a point, following the model to the letter: ka·Ia + Σ (kd·n·l + ks·max(0, r·v)^s) · Id ·
 /// fall-off over the lights that n faces. A lamp exactly at the point lights no side of it.
-fn model(scene: &Scene, material: &Material, (at, normal): (Wide, Wide)) -> f64 {
+fn model(scene: &Scene, material: &Material, (at, normal): (Vector, Vector)) -> f64 {
     let mut sum = f64::from(material.ambient) * f64::from(scene.ambient);
     let to_eye = unit(sub(wide(scene.camera.eye), at));
     for light in scene.lights() {
@@ -197,12 +176,9 @@ fn n4_lamps_on_a_surface_at_a_vertex_at_the_eye() {
             };
             scene.add_light(light.with_intensity(random.one_of(&[0.5, 1.0, 3.0])));
         }
-        let mut drawn: Vec<Vertex> = Vec::new();
-        Renderer::new()
-            .for_each_triangle(&scene, Screen::MODE_13H, |vertices, _| drawn.extend(*vertices))
-            .expect("a legal scene");
+        let drawn = triangles_by(&mut Renderer::new(), &scene);
         let is_front = (corners[1] - corners[0]).cross(corners[2] - corners[0]).z > 0.0;
-        for (corner, vertex) in drawn.iter().enumerate().filter(|_| is_front) {
+        for (corner, vertex) in drawn.as_flattened().iter().enumerate().filter(|_| is_front) {
             let normal = unit(wide(normal)).expect("a normal");
             let expected = model(&scene, &material, (wide(corners[corner % 3]), normal)).clamp(0.0, 1.0);
             // A shade is rounded to half a unit. The normal is f32, off by a few 2⁻²⁴, which a highlight multiplies by

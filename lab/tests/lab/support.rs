@@ -13,6 +13,8 @@ pub mod shipped;
 pub mod triangles;
 #[path = "../../../tests/support/tried.rs"]
 pub mod tried;
+#[path = "../../../tests/support/vector.rs"]
+pub mod vector;
 #[path = "../../../tests/support/workspace.rs"]
 pub mod workspace;
 

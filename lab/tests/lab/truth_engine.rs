@@ -3,6 +3,7 @@
 use std::sync::LazyLock;
 
 use crate::support::tried::Tried;
+use crate::support::vector::{cross, dot, sub, wide};
 use crate::support::{scenes, shaded};
 use mode13h::Angle;
 use mode13h::glam::Vec3;
@@ -797,13 +798,9 @@ fn eight() -> Written {
 
 /// Which faces are turned toward an eye.
 fn look_toward(mesh: &Mesh, eye: Vec3) -> Vec<bool> {
-    let wide = |p: Vec3| p.to_array().map(f64::from);
     let toward = |triangle: &[u32; 3]| {
         let [a, b, c] = triangle.map(|i| wide(mesh.positions()[i as usize]));
-        let from_a = |p: [f64; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
-        let (u, v, e) = (from_a(b), from_a(c), from_a(wide(eye)));
-        let n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-        n[0] * e[0] + n[1] * e[1] + n[2] * e[2] > 0.0
+        dot(cross(sub(b, a), sub(c, a)), sub(wide(eye), a)) > 0.0
     };
     mesh.triangles().iter().map(toward).collect()
 }
