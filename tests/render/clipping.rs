@@ -3,6 +3,7 @@
 mod far;
 
 use crate::floor::{HEIGHT, WIDTH, counts_by, scene};
+use crate::integer_frames::distance as from_segment;
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
 use crate::support::scenes::triangles_by;
@@ -243,14 +244,9 @@ fn edges_of_far_triangles(mut tried: Tried) {
 }
 
 /// Distance of a point from the nearest of these segments, in pixels.
-fn nearest(edges: &[[(i32, i32); 2]], (x, y): (f64, f64)) -> f64 {
+fn nearest(edges: &[[(i32, i32); 2]], at: (f64, f64)) -> f64 {
     let pixels = |(x, y): (i32, i32)| (f64::from(x) / 256.0, f64::from(y) / 256.0);
-    edges.iter().fold(f64::INFINITY, |least, &[a, b]| {
-        let (a, b) = (pixels(a), pixels(b));
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let t = (((x - a.0) * dx + (y - a.1) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-        least.min(f64::hypot(x - a.0 - t * dx, y - a.1 - t * dy))
-    })
+    edges.iter().fold(f64::INFINITY, |least, &[a, b]| least.min(from_segment(at, pixels(a), pixels(b))))
 }
 
 /// A corner passes slowly through the near plane, and nothing pops. The truth here is the shade linear along the face

@@ -1,6 +1,8 @@
 //! Pictures for terminals: the output is decoded by decoders written from the formats' specifications, and compared
 //! with the picture pixel by pixel.
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use std::process::{Output, Stdio};
 
 use mode13h::export::{Picture, Scale, Scaled};
@@ -115,7 +117,7 @@ fn decode_kitty(mut text: &[u8]) -> (String, Vec<u8>, &[u8]) {
             Some(_) => assert_eq!(keys, "", "the keys stand in the first chunk alone"),
         }
         assert!(more == "0" || base64.len().is_multiple_of(4));
-        bytes.extend(decode_base64(base64));
+        bytes.extend(STANDARD.decode(base64).expect("base64"));
         if more == "0" {
             return (first.unwrap_or_default(), bytes, text);
         }
@@ -123,18 +125,7 @@ fn decode_kitty(mut text: &[u8]) -> (String, Vec<u8>, &[u8]) {
     }
 }
 
-/// RFC 4648, section 4.
-fn decode_base64(text: &str) -> Vec<u8> {
-    const LETTERS: &str = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let bits: Vec<u32> = text.trim_end_matches('=').chars().map(|c| LETTERS.find(c).expect("base64") as u32).collect();
-    let group = |group: &[u32]| {
-        let all = group.iter().fold(0, |all, six| all << 6 | six) << (6 * (4 - group.len()));
-        all.to_be_bytes()[1..group.len()].to_vec()
-    };
-    bits.chunks(4).flat_map(group).collect()
-}
-
-/// Checks that a decoded picture has these pixels, with the colours of their entries to the nearest percent.
+/// Asserts that a decoded picture has these pixels, with the colours of their entries to the nearest percent.
 #[track_caller]
 fn assert_shows(decoded: &Decoded, rows: &[Vec<u8>], palette: &[Rgb; 256]) {
     assert_eq!((decoded.width, decoded.height), (rows[0].len(), rows.len()));
