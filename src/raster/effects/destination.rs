@@ -21,11 +21,17 @@ pub(super) trait Destination {
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
 
+    /// The drawn pixels of span `i`, whose depths are tested when they are shown.
+    #[inline(always)]
+    fn untested(&self, spans: &Spans<'_>, i: usize) -> DrawnPixels {
+        let (at, length, skipped) = self.span(spans, i);
+        DrawnPixels { at, length, skipped, is_tested: false, stays: u64::MAX }
+    }
+
     /// The drawn pixels of span `i`, or `None` if all of them turn out to be hidden.
     #[inline(always)]
     fn begin<S: Lanes8>(&mut self, _: S, spans: &Spans<'_>, i: usize) -> Option<DrawnPixels> {
-        let (at, length, skipped) = self.span(spans, i);
-        Some(DrawnPixels { at, length, skipped, stays: u64::MAX })
+        Some(DrawnPixels { is_tested: true, ..self.untested(spans, i) })
     }
 
     /// Writes texels to these pixels of span `i`; `before` of its drawn pixels come earlier.
@@ -52,8 +58,9 @@ pub(super) struct DrawnPixels {
     pub(super) length: usize,
     /// How many leading pixels of the span are skipped.
     pub(super) skipped: u32,
-    /// The mask of the pixels that stay as they are, if they are a single block whose depths have been tested;
-    /// otherwise all bits.
+    /// True if the depths of a single block have been tested, as soon as the span began.
+    is_tested: bool,
+    /// The mask of the pixels of such a block that stay as they are; all bits for more pixels.
     stays: u64,
 }
 
@@ -165,24 +172,12 @@ pub(super) struct Masked<'a> {
     pub(super) nearer: u32,
 }
 
-impl Destination for Masked<'_> {
-    const SHOWS_PAIRS: bool = false;
-
+impl Masked<'_> {
+    /// Tests the pixels of span `i` if they are a single block, as most are. Returns `None` if all are hidden.
     #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        spans.in_frame(i)
-    }
-
-    #[inline(always)]
-    fn all(&mut self) -> &mut [u8] {
-        self.pixels
-    }
-
-    #[inline(always)]
-    fn begin<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize) -> Option<DrawnPixels> {
-        let (at, length, skipped) = self.span(spans, i);
-        let mut pixels = DrawnPixels { at, length, skipped, stays: u64::MAX };
-        // Most spans are a single block. It is tested first, so that nothing is computed for a hidden one.
+    fn test<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize, mut pixels: DrawnPixels) -> Option<DrawnPixels> {
+        let DrawnPixels { at, length, .. } = pixels;
+        pixels.is_tested = true;
         if IS_COMPACT || length > LANES || at + LANES > self.pixels.len() {
             return Some(pixels);
         }
@@ -202,16 +197,42 @@ impl Destination for Masked<'_> {
         }
         Some(pixels)
     }
+}
+
+impl Destination for Masked<'_> {
+    const SHOWS_PAIRS: bool = false;
+
+    #[inline(always)]
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
+        spans.in_frame(i)
+    }
+
+    #[inline(always)]
+    fn all(&mut self) -> &mut [u8] {
+        self.pixels
+    }
+
+    /// A short span is tested first, so that nothing is computed for a hidden one.
+    #[inline(always)]
+    fn begin<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize) -> Option<DrawnPixels> {
+        let pixels = self.untested(spans, i);
+        self.test(s, spans, i, pixels)
+    }
 
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
         s: S,
         (spans, i, before): (&Spans<'_>, usize, u32),
-        DrawnPixels { at, length, stays, .. }: DrawnPixels,
+        mut pixels: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         mut places: impl PlacesAlong<S>,
     ) {
+        if !pixels.is_tested {
+            let Some(tested) = self.test(s, spans, i, pixels) else { return };
+            pixels = tested;
+        }
+        let DrawnPixels { at, length, stays, .. } = pixels;
         if stays != u64::MAX {
             if let Some(block) = chunk_at(self.pixels, at) {
                 show_block(s, (block, stays), texels, (tint, along), &mut places);
