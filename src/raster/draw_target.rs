@@ -14,7 +14,8 @@ use super::frame::Frame;
 /// A palette index as a colour of `embedded-graphics`.
 ///
 /// ```
-/// use embedded_graphics::{mono_font::{MonoTextStyle, ascii::FONT_6X10}, prelude::*, text::Text};
+/// use mode13h::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
+/// use mode13h::embedded_graphics::{prelude::*, text::Text};
 /// use mode13h::raster::{Frame, Index};
 ///
 /// let mut bytes = [0_u8; 32 * 12];
