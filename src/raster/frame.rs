@@ -162,6 +162,8 @@ impl<'a> Frame<'a> {
     }
 
     /// Sets every pixel that it holds to `index`; bytes between the rows are left alone.
+    ///
+    /// This hides the method of the same name that `embedded-graphics` has for its colours.
     pub fn clear(&mut self, index: u8) {
         let (width, rows) = (self.width as usize, self.rows.len());
         if self.pitch == width {
