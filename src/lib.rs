@@ -85,6 +85,14 @@ macro_rules! internal {
         $(#[$meta])*
         pub(crate) fn $($rest)*
     };
+    ($(#[$meta:meta])* const fn $($rest:tt)*) => {
+        #[cfg(feature = "internals")]
+        $(#[$meta])*
+        pub const fn $($rest)*
+        #[cfg(not(feature = "internals"))]
+        $(#[$meta])*
+        pub(crate) const fn $($rest)*
+    };
 }
 
 pub mod fixed;

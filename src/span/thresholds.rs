@@ -50,17 +50,19 @@ pub struct ThresholdRow(
 );
 
 impl ThresholdRow {
-    /// A row that repeats `thresholds`, whose number divides 64.
-    #[must_use]
-    pub const fn new<const N: usize>(thresholds: &[u8; N]) -> Self {
-        const { assert!(PERIOD.is_multiple_of(N)) }
-        let mut row = [0; PERIOD + MAX_BLOCK];
-        let mut x = 0;
-        while x < row.len() {
-            row[x] = thresholds[x % N];
-            x += 1;
+    internal! {
+        /// A row that repeats `thresholds`, whose number divides 64.
+        #[must_use]
+        const fn new<const N: usize>(thresholds: &[u8; N]) -> Self {
+            const { assert!(PERIOD.is_multiple_of(N)) }
+            let mut row = [0; PERIOD + MAX_BLOCK];
+            let mut x = 0;
+            while x < row.len() {
+                row[x] = thresholds[x % N];
+                x += 1;
+            }
+            Self(row)
         }
-        Self(row)
     }
 
     /// The threshold of a column of the frame.
