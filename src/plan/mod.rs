@@ -127,7 +127,7 @@ impl ObjectPlan {
 
 /// Manual overrides of effects: `None` leaves an effect to the plan.
 #[derive(Clone, PartialEq, Eq, Debug, Default)]
-pub struct Overrides {
+pub(crate) struct Overrides {
     /// `None` stands for every object without an override of its own.
     all: Vec<(Option<ObjectId>, Effect, bool)>,
 }
