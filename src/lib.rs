@@ -20,7 +20,8 @@
 //! | [`plan`] | decides which effects a scene calls for, and why | `alloc` |
 //! | [`render`] | draws a scene: vertices, clipping, faces, the raster; counts of the work | `alloc` |
 //! | [`export`] | indexed PNG, RGB pictures; files that are never half-written | `std` |
-//! | [`window`] | the frame loop of a game: [`window::run`] | `window` |
+#![cfg_attr(feature = "window", doc = "| [`window`] | the frame loop of a game: [`window::run`] | `window` |")]
+#![cfg_attr(not(feature = "window"), doc = "| `window` | the frame loop of a game: `window::run` | `window` |")]
 //!
 #![cfg_attr(feature = "png", doc = "```no_run")]
 #![cfg_attr(not(feature = "png"), doc = "```ignore")]
