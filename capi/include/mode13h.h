@@ -24,8 +24,10 @@
  * pointer or a wrong length, pitch, index or number gives a code. Lengths that claim more memory than there is cannot be
  * detected.
  *
- * STRUCTS have their size as their first member, and a function m13_..._init that sets it and gives all other members
- * harmless values. Call it first; then set what you need. Later versions may append members.
+ * STRUCTS have their size as their first member, and later versions may append members. m13_target, m13_mesh and
+ * m13_material each have a function m13_..._init that sets it and gives all other members harmless values: call it first,
+ * then set what you need. m13_stats, which the library fills in, has none: set its `size` yourself. Only m13_vertex and
+ * m13_vertex_x have no size: they are four numbers, and stay so.
  *
  * COORDINATES. x runs to the right and y down, in pixels. The top left pixel covers 0 to 1, so its centre is at (0.5, 0.5).
  * Coordinates are rounded to the nearest 1/256 pixel.
@@ -183,15 +185,15 @@ typedef struct m13_mesh {
     uint32_t fog;         /* required with a fog table */
     uint32_t slope;       /* column, row of the slope table; required with one */
     uint32_t homogeneous; /* 0: x and y are pixels. 1: x / w and y / w are, and triangles are clipped where w < near. */
-    uint32_t index_bits;  /* 8, 16 or 32 */
+    uint32_t index_bits;  /* 8, 16 (the default) or 32 */
     uint32_t index_count; /* three per triangle */
-    float near_w;         /* the near plane of m13_draw, above 0 */
-    int32_t near_w_x;     /* the near plane of m13_draw_x, in 16.16, above 0 */
+    float near_w;         /* the near plane of m13_draw, above 0; by default 1.0 */
+    int32_t near_w_x;     /* the near plane of m13_draw_x, in 16.16, above 0; by default 1 << 16 */
     const void *vertices;
     const void *indices; /* null: every three consecutive vertices are a triangle */
 } m13_mesh;
 
-/* Vertices that have only a position, at offset 0, and no indices. */
+/* Vertices that have only a position, at offset 0, and no indices. The other members get the defaults named above, or 0. */
 int m13_mesh_init(m13_mesh *mesh, const void *vertices, uint32_t count, uint32_t stride);
 
 /* Which triangles are culled, by the winding of their corners as seen on the screen. */
@@ -225,7 +227,7 @@ typedef struct m13_material {
     uint32_t cull;       /* M13_CULL_... */
     uint32_t mapping;    /* M13_AFFINE, ... */
     uint32_t dither;     /* M13_DITHER_... */
-    uint32_t keep_depth; /* 1; 0 tests depths but does not store them, for translucent faces (needs a context) */
+    uint32_t keep_depth; /* by default 1; 0 tests depths but does not store them, for translucent faces (needs a context) */
     uint32_t u_bits;     /* the picture is 2^u_bits wide, at most 256, and 2^v_bits high; it wraps */
     uint32_t v_bits;
     uint32_t reserved;
@@ -236,10 +238,10 @@ typedef struct m13_material {
     const uint8_t *blend_table;
 } m13_material;
 
-/* A material with a shading and nothing else. */
+/* A material with a shading and nothing else: `keep_depth` is 1, all other members are 0. */
 int m13_material_init(m13_material *material, uint32_t shading);
 
-/* Counts of a call. Set `size`, or all of it to 0 and then `size`. */
+/* Counts of a call. Set `size` to sizeof(m13_stats) before the call; the rest is overwritten. */
 typedef struct m13_stats {
     uint32_t size;
     uint32_t triangles; /* drawn; each part of a clipped one counts */
