@@ -11,6 +11,8 @@ use crate::model_file::Options;
 use crate::scene_file::{self, Loaded, SceneError};
 
 /// Methods of [`Scene`] that read files.
+///
+/// To read a scene file from a path, call [`scene_file::load`].
 pub trait SceneExt: Sized {
     /// Makes a scene that shows a model file with its materials and textures, centred, turning once per
     /// [loop](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
