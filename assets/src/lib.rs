@@ -8,7 +8,7 @@
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
 //! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and with the feature `images` JPEG, TGA, BMP and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
-//! | [`auto_palette`] | a palette for a scene, from what is visible of it over a loop |
+//! | [`auto_palette`] | a palette for a scene, from what is visible of it over a round |
 //! | [`look`] | the looks of old machines: palette, dither, mapping and vertices under one name |
 //! | [`animation`] | animated GIF and PNG, and Y4M for other programs |
 //! | [`terminal`] | pictures as sixels, and by kitty's graphics protocol |

@@ -15,7 +15,7 @@ use crate::scene_file::{self, Loaded, SceneError};
 /// To read a scene file from a path, call [`scene_file::load`].
 pub trait SceneExt: Sized {
     /// Makes a scene that shows a model file with its materials and textures, centred, turning once per
-    /// [loop](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
+    /// [round](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
     /// it; a grey one is drawn in greys.
     ///
     /// The model brings no light and no background. It is lit by a key light, a weaker fill from the other side and

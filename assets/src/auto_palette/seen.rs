@@ -16,13 +16,13 @@ use mode13h::scene::{Motion, Path, Scene};
 use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
-/// The number of pictures per loop, unless too many of them would show the same pose.
+/// The number of pictures per round, unless too many of them would show the same pose.
 const POSES: u32 = 16;
 
-/// The greatest number of pictures per loop.
+/// The greatest number of pictures per round.
 const MAX_POSES: u32 = 64;
 
-/// Area and brightness of a material, as visible over one loop of the scene.
+/// Area and brightness of a material, as visible over one round of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Seen {
     /// The share of its pixels among all covered pixels, 0 to 1.
@@ -34,8 +34,8 @@ pub struct Seen {
     pub brightest: f32,
 }
 
-/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, or at one if
-/// nothing moves. There are more moments if a motion repeats a multiple of 8 times per loop.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a round of the scene, or at one if
+/// nothing moves. There are more moments if a motion repeats a multiple of 8 times per round.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -61,10 +61,10 @@ pub(super) fn seen_in(scene: &Scene, round: &Round<'_>) -> Result<Vec<Vec<Seen>>
     Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
 }
 
-/// A loop of a scene: the moments that are drawn, and what moves in addition to the scene's motions.
+/// A round of a scene: the moments that are drawn, and what moves in addition to the scene's motions.
 pub(super) struct Round<'p> {
     poses: u32,
-    /// The time of the first moment, and the length of the loop, in seconds.
+    /// The time of the first moment, and the length of the round, in seconds.
     from: f64,
     duration: f64,
     pose: &'p dyn Fn(&mut Scene, f64),
@@ -78,7 +78,7 @@ pub(super) struct Moment<'p> {
 }
 
 impl Round<'_> {
-    /// A loop of a scene in which nothing moves but its motions.
+    /// A round of a scene in which nothing moves but its motions.
     pub(super) fn of(scene: &Scene) -> Self {
         Self::moved(scene, &[], &|_, _| {})
     }
@@ -90,7 +90,7 @@ impl Round<'_> {
 }
 
 impl<'p> Round<'p> {
-    /// A loop of a scene in which `pose` moves something, too, that repeats after each of these times, in seconds.
+    /// A round of a scene in which `pose` moves something, too, that repeats after each of these times, in seconds.
     pub(super) fn moved(scene: &Scene, periods: &[f64], pose: &'p dyn Fn(&mut Scene, f64)) -> Self {
         let (poses, from) = match scene.motions.is_empty() && periods.is_empty() {
             true => (1, scene.time()),
@@ -100,7 +100,7 @@ impl<'p> Round<'p> {
     }
 }
 
-/// How often each motion repeats in a loop, to the nearest whole number above 0.
+/// How often each motion repeats in a round, to the nearest whole number above 0.
 fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
     let of_motion = |motion: &Motion| match motion {
         Motion::Spin { turns, .. } => turns.map(|turns| turns * scene.duration),
@@ -113,7 +113,7 @@ fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
     all.map(|rounds| libm::round(libm::fabs(rounds)) as u32).filter(|rounds| *rounds > 0).collect()
 }
 
-/// The number of moments in a loop that show each motion in at least four poses.
+/// The number of moments in a round that show each motion in at least four poses.
 ///
 /// With r rounds of a motion, n / gcd(n, r) of n moments are different: of 16 moments with 8 rounds only two, and with
 /// 16 rounds one. The number is 16 unless some r is a multiple of 8.
