@@ -2,7 +2,8 @@
 //! 256 colours, fixed-point arithmetic, and one inner loop, `mov [edi],ah` / `inc edi` / `add ax,bx` / `dec cx` /
 //! `jnz`.
 //!
-//! The modules, lowest layer first: each uses only those listed before it.
+//! The modules, lowest layer first: each uses only those listed before it, except that a few small types are re-exported
+//! from a later module.
 //!
 //! | module | holds | needs |
 //! |---|---|---|
