@@ -16,7 +16,7 @@ use core::ops::Range;
 
 use super::Rgb;
 
-/// The boxes after some cuts.
+/// Median cut: reduces weighted colours to a few, box by box.
 #[derive(Clone, Debug)]
 pub struct MedianCut {
     /// Colours with their weights, grouped by box.

@@ -30,7 +30,7 @@ pub fn y4m_header(picture: &Picture<'_>, scale: Scale, rate: (u16, u16)) -> Resu
     Ok(format!("YUV4MPEG2 W{width} H{height} F{}:{} Ip A{down}:{across} C444\n", rate.0, rate.1))
 }
 
-/// A frame of the stream.
+/// A frame of a Y4M stream, to follow [`y4m_header`].
 ///
 /// # Errors
 ///

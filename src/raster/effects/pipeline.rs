@@ -79,7 +79,7 @@ impl SampleSpacing {
     }
 }
 
-/// The result of mixing three channels.
+/// How red, green and blue become a palette index.
 #[derive(Clone, Copy, Debug)]
 pub enum Mix<'a> {
     /// The 6 × 6 × 6 colours of [`palette::cube`](crate::palette::cube).
