@@ -26,6 +26,8 @@ pub use seen::{Seen, seen};
 pub use share::{Automatic, Entries, Use, share, share_beside};
 
 /// A palette for a scene, and the scene's materials in it.
+///
+/// [`Automatic`] is one for surfaces, which need not belong to a scene.
 #[derive(Clone, PartialEq, Debug)]
 #[non_exhaustive]
 pub struct AutomaticPalette {

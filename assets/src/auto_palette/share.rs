@@ -74,7 +74,9 @@ pub enum Entries {
     },
 }
 
-/// A palette, and the entries of each surface in it.
+/// A palette for surfaces, with the entries of each, as [`share`] distributes them.
+///
+/// [`AutomaticPalette`](super::AutomaticPalette) is one for a scene, with its materials.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Automatic {
     /// The colours, all of which the card shows exactly. The palette declares no ramps: they are not equal, so
