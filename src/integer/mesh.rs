@@ -11,19 +11,19 @@ mod sealed {
 }
 
 /// The index of a vertex: `u16`, or `u32` for more than 65,536 vertices.
-pub trait Index: Copy + sealed::Sealed {
+pub trait VertexIndex: Copy + sealed::Sealed {
     /// The index as a `usize`, for the slices.
     fn place(self) -> usize;
 }
 
-impl Index for u16 {
+impl VertexIndex for u16 {
     #[inline]
     fn place(self) -> usize {
         usize::from(self)
     }
 }
 
-impl Index for u32 {
+impl VertexIndex for u32 {
     #[inline]
     fn place(self) -> usize {
         // Lossless on every target that the raster supports: a frame may have 2²⁴ pixels.
@@ -33,7 +33,7 @@ impl Index for u32 {
 
 /// A mesh in 16.16, borrowed and checked, so always valid.
 #[derive(Clone, Copy, Debug)]
-pub struct FixedMesh<'a, I: Index = u16> {
+pub struct FixedMesh<'a, I: VertexIndex = u16> {
     pub(crate) positions: &'a [Vector],
     pub(crate) normals: &'a [Vector],
     pub(crate) triangles: &'a [[I; 3]],
@@ -52,7 +52,7 @@ pub struct FixedMesh<'a, I: Index = u16> {
 
 /// The slices and values that a [`FixedMesh`] consists of.
 #[derive(Clone, Copy, Debug)]
-pub struct FixedMeshParts<'a, I: Index> {
+pub struct FixedMeshParts<'a, I: VertexIndex> {
     /// The positions of its vertices.
     pub positions: &'a [Vector],
     /// Their unit normals.
@@ -71,7 +71,7 @@ pub struct FixedMeshParts<'a, I: Index> {
     pub triangle_surfaces: &'a [u16],
 }
 
-impl<'a, I: Index> FixedMesh<'a, I> {
+impl<'a, I: VertexIndex> FixedMesh<'a, I> {
     /// The largest absolute coordinate.
     pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
 
@@ -195,7 +195,7 @@ fn count(what: &'static str, given: usize, needed: usize) -> Result<(), IntegerE
     if given == needed { Ok(()) } else { Err(IntegerError::Count { what, given, needed }) }
 }
 
-fn check_indices<I: Index>(triangles: &[[I; 3]], vertices: usize) -> Result<(), IntegerError> {
+fn check_indices<I: VertexIndex>(triangles: &[[I; 3]], vertices: usize) -> Result<(), IntegerError> {
     match triangles.iter().position(|t| t.iter().any(|i| i.place() >= vertices)) {
         Some(triangle) => Err(IntegerError::IndexOutOfRange { triangle }),
         None => Ok(()),
@@ -225,7 +225,7 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
 ///
 /// # Errors
 /// Fewer normals than positions; an index out of range.
-pub fn average_normals<I: Index>(
+pub fn average_normals<I: VertexIndex>(
     positions: &[Vector],
     triangles: &[[I; 3]],
     normals: &mut [Vector],
@@ -235,7 +235,7 @@ pub fn average_normals<I: Index>(
     const NONE: Vector = [I16F16::from_bits(0); 3];
     let faces = || {
         triangles.iter().filter_map(|t| {
-            let corners = t.map(Index::place);
+            let corners = t.map(VertexIndex::place);
             let [a, b, c] = corners.map(|i| positions[i]);
             Some((corners, face_normal(a, b, c)?))
         })

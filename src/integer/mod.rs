@@ -64,7 +64,7 @@ use core::fmt;
 pub use angle::BinaryAngle;
 pub use light::{ObjectSun, Paint, Sun};
 pub use mesh::{FixedMesh, average_normals, face_normal};
-pub use mesh::{FixedMeshParts, Index};
+pub use mesh::{FixedMeshParts, VertexIndex};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};

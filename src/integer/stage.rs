@@ -3,7 +3,7 @@
 use super::IntegerError;
 use super::clip::{Corner, clip};
 use super::light::{ObjectSun, Paint, Sun};
-use super::mesh::{FixedMesh, Index, face_normal};
+use super::mesh::{FixedMesh, VertexIndex, face_normal};
 use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
 use crate::raster::clip::doubled_area;
@@ -12,7 +12,7 @@ use crate::settings::Shading;
 
 /// A mesh with its placement, and one paint for each of its surfaces.
 #[derive(Clone, Copy, Debug)]
-pub struct Object<'a, I: Index = u16> {
+pub struct Object<'a, I: VertexIndex = u16> {
     /// The mesh.
     pub mesh: FixedMesh<'a, I>,
     /// Its position, rotation and scale in the scene.
@@ -47,7 +47,7 @@ pub struct Faces {
 
 /// An object whose vertices are ready: its faces can be drawn, once for each band.
 #[derive(Clone, Copy, Debug)]
-pub struct VertexStage<'a, I: Index = u16> {
+pub struct VertexStage<'a, I: VertexIndex = u16> {
     /// A shading that needs nothing but the vertices.
     shading: Shading,
     object: Object<'a, I>,
@@ -56,7 +56,7 @@ pub struct VertexStage<'a, I: Index = u16> {
     lit: &'a [LitVertex],
 }
 
-impl<'a, I: Index> VertexStage<'a, I> {
+impl<'a, I: VertexIndex> VertexStage<'a, I> {
     /// Lights and projects every vertex of the mesh. `lit` must hold at least as many vertices as the mesh has, and
     /// `beams` at least as many beams as there are suns. Shadings that this path lacks (those that light pixels, split
     /// faces or need floats) are replaced by the default.
@@ -109,7 +109,7 @@ impl<'a, I: Index> VertexStage<'a, I> {
         let mesh = &self.object.mesh;
         for (face, indices) in mesh.triangles.iter().enumerate() {
             // In range, which the mesh guarantees, and every vertex is lit.
-            let indices = indices.map(Index::place);
+            let indices = indices.map(VertexIndex::place);
             let corners = indices.map(|i| self.lit[i]);
             if corners.iter().any(|corner| corner.needs_clipping) {
                 counts.clipped += 1;

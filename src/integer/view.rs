@@ -20,7 +20,7 @@
 
 use super::IntegerError;
 use super::angle::{BinaryAngle, SINE_BITS};
-use super::mesh::{FixedMesh, Index, square};
+use super::mesh::{FixedMesh, VertexIndex, square};
 use super::vector::{Matrix, Vector, Wide, cross, dot, product, round_shift, unit, wide_turn, widen};
 use crate::fixed::{I16F16, I24F8, U8F8};
 use crate::raster::{Frame, Vertex};
@@ -132,7 +132,7 @@ impl View {
     ///
     /// # Errors
     /// A scale below 0; a mesh that may reach farther than 65,535 units from the eye.
-    pub fn check<I: Index>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
+    pub fn check<I: VertexIndex>(&self, placement: &Placement, mesh: &FixedMesh<'_, I>) -> Result<(), IntegerError> {
         ObjectView::new(self, placement, mesh).map(|_| ())
     }
 }
@@ -204,7 +204,7 @@ impl ObjectView {
     /// pixel.
     pub(super) const LIMIT: i64 = 4 * 4096 - 1;
 
-    pub(super) fn new<I: Index>(
+    pub(super) fn new<I: VertexIndex>(
         view: &View,
         placement: &Placement,
         mesh: &FixedMesh<'_, I>,
