@@ -1,8 +1,8 @@
 //! Instruction-set levels as values. A token exists only if the processor has its level, so code
 //! that takes one needs no other proof.
 //!
-//! The span kernels use the intrinsics of a level. Everything else is written once, over [`Lanes8`] or plain arrays of
-//! eight lanes, and compiled for each level by `compiled_for_each_level!`.
+//! The span kernels, in `crate::span::simd`, use the intrinsics of a level themselves. Everything else is written once,
+//! over [`Lanes8`] or plain arrays of eight lanes, and compiled for each level by `compiled_for_each_level!`.
 
 #![cfg_attr(simd_x86_64, expect(unsafe_code, reason = "code for processors found only when the program runs"))]
 

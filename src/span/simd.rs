@@ -9,6 +9,8 @@
 //! ```
 //!
 //! so that no lane has to be packed or carried across the register. Both advance by a block's worth of steps.
+//!
+//! The levels that a processor may have, and lanes for all other code, are in `crate::simd`.
 
 /// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
 pub(super) mod arrays {
@@ -265,11 +267,11 @@ pub(super) mod sse2 {
 }
 
 #[cfg(any(simd_neon, simd_wasm))]
-mod simd128;
+mod wide128;
 #[cfg(simd_neon)]
-pub(super) use simd128::neon;
+pub(super) use wide128::neon;
 #[cfg(simd_wasm)]
-pub(super) use simd128::wasm;
+pub(super) use wide128::wasm;
 
 #[cfg(simd_x86_64)]
 pub(crate) mod nearer;
