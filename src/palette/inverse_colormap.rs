@@ -75,7 +75,7 @@ impl fmt::Debug for InverseColormap {
 
 /// See [`InverseColormap::spread`].
 ///
-/// Measured on colours between neighbours (`tests/palette_tables.rs`), the means of 8 × 8 blocks
+/// Measured on colours between neighbours (`tests/scene/palette_tables.rs`), the means of 8 × 8 blocks
 /// are off by 7.3 without dithering and 1.9 with this spread (20) in the palette of 16 ramps, and
 /// by 11.7 and 1.4 in the cube (spread 49). A larger spread reaches colours that are far from all
 /// entries, at the price of noise everywhere. The mean instead of the median would give the cube

@@ -21,7 +21,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// 40°, rounded to an f32: about what a 4:3 screen covers at one and a half arm's lengths.
+    /// The vertical field of view of [`framing`](Self::framing): 40°, rounded to an f32.
     pub const FIELD_OF_VIEW: Angle = Angle::from_radians((40.0 * core::f32::consts::PI / 180.0) as f64);
 
     /// The fraction of the picture's height that a framed sphere fills.

@@ -131,7 +131,7 @@ pub(super) struct Events {
     /// The mouse buttons that were down at the last call.
     buttons: Buttons,
     active: bool,
-    /// The last position of the mouse with its left button down, in pixels of the frame.
+    /// The last position of the mouse with its left button down, in columns and rows of the picture.
     drawn_from: Option<(f32, f32)>,
 }
 

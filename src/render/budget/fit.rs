@@ -76,7 +76,7 @@ const fn grid<const EIGHTS: usize>(n: usize) -> [Weights; EIGHTS] {
     eights
 }
 
-/// 6, 15, 45 and 153 points, including the six nodes.
+/// The points of grids of 15, 45 and 153, without the six nodes.
 static FOURTHS: [Weights; 2] = grid(4);
 static EIGHTHS: [Weights; 5] = grid(8);
 static SIXTEENTHS: [Weights; 19] = grid(16);
