@@ -181,7 +181,7 @@ impl Rules<'_> {
             is_out_of_sight: self.is_out_of_sight && !forced(Effect::Transform),
             vertices: match is_on(Effect::Transform) {
                 false => VertexStage::Keep,
-                true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::MakeAnew,
+                true if forced(Effect::Transform) || !self.inputs.keeps => VertexStage::RecomputeAll,
                 true => VertexStage::Make,
             },
             lighting: match is_on(Effect::Lighting) {

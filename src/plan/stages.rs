@@ -52,7 +52,7 @@ pub(crate) enum VertexStage {
     Make,
     /// Vertices and everything cached with them are recomputed, because this was forced or nothing is cached.
     #[default]
-    MakeAnew,
+    RecomputeAll,
 }
 
 /// The light that contributes to shades.

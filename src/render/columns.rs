@@ -69,13 +69,13 @@ pub(super) struct AddedTriangles {
 
 impl AddedTriangles {
     /// The number of added triangles at which the pending ones are drawn. The parts of one more face may exceed it.
-    pub(super) const MAX_WAITING: usize = 64;
+    pub(super) const MAX_PENDING: usize = 64;
     /// The most corners and triangles that one face adds, see `raster::clip`.
     pub(super) const MAX_OF_FACE: usize = 8;
 
     /// Allocates memory for the most triangles that may be pending.
     pub(super) fn make_room(&mut self) {
-        let most = 3 * Self::MAX_WAITING + Self::MAX_OF_FACE;
+        let most = 3 * Self::MAX_PENDING + Self::MAX_OF_FACE;
         let (vertices, triangles) = (self.vertices.at.len(), self.indices.len());
         if self.vertices.at.capacity() < most {
             self.resize(vertices + most, triangles + most);
@@ -126,7 +126,7 @@ impl AddedTriangles {
     }
 
     /// The number of triangles added since others were kept or removed.
-    pub(super) fn waiting(&self) -> usize {
+    pub(super) fn pending(&self) -> usize {
         self.indices.len() - self.kept.1
     }
 
@@ -150,7 +150,7 @@ impl AddedTriangles {
     }
 
     /// Removes the added triangles that are not kept.
-    pub(super) fn drop_waiting(&mut self) {
+    pub(super) fn drop_pending(&mut self) {
         let (vertices, triangles) = self.kept;
         self.resize(vertices, triangles);
     }
@@ -158,6 +158,6 @@ impl AddedTriangles {
     /// Removes all added triangles.
     pub(super) fn clear(&mut self) {
         self.kept = (0, 0);
-        self.drop_waiting();
+        self.drop_pending();
     }
 }

@@ -368,7 +368,7 @@ impl Outputs {
     /// Clears the texture coordinates, unless those of the last frame are still valid.
     fn forget_texels(&mut self, inputs: &Inputs<'_>) {
         let stages = inputs.plan.stages();
-        let stay = stages.vertices != VertexStage::MakeAnew
+        let stay = stages.vertices != VertexStage::RecomputeAll
             && stages.has_texture()
             && !stages.has_environment()
             && inputs.is_mesh

@@ -186,7 +186,7 @@ impl<'a> Picker<'a> {
             _ => added.vertex(vertex, &Attributes::default()),
         });
         added.triangle(corners, 0);
-        if added.waiting() == CHUNK {
+        if added.pending() == CHUNK {
             self.finish_vertices(shading);
         }
     }
@@ -195,14 +195,14 @@ impl<'a> Picker<'a> {
     pub(super) fn finish_vertices(&mut self, shading: Shading) {
         let (effects, transparent, one_shade) = (false, false, shading == Shading::Flat);
         let look = Look { surface: 0, shading: shading.into(), effects, transparent, one_shade, added: true };
-        self.push_added(look, self.scratch.added.len() - self.scratch.added.waiting(), None);
+        self.push_added(look, self.scratch.added.len() - self.scratch.added.pending(), None);
         self.finish(&Triangles::NONE);
     }
 
     /// Returns whether there is no room for 64 more, or for the parts of one more face.
     #[inline]
     fn is_full(&self) -> bool {
-        self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.waiting() >= AddedTriangles::MAX_WAITING
+        self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.pending() >= AddedTriangles::MAX_PENDING
     }
 
     /// Draws the pending picks, all of which are lit. `triangles` are the object's.
@@ -225,7 +225,7 @@ impl<'a> Picker<'a> {
         if keeps {
             added.keep();
         } else {
-            added.drop_waiting();
+            added.drop_pending();
         }
     }
 }

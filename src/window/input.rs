@@ -132,7 +132,7 @@ pub(super) struct Events {
     buttons: Buttons,
     active: bool,
     /// The last position of the mouse with its left button down, in columns and rows of the picture.
-    drawn_from: Option<(f32, f32)>,
+    dragged_from: Option<(f32, f32)>,
 }
 
 impl InputCallback for Events {
@@ -168,7 +168,7 @@ impl Events {
         let (buttons_pressed, buttons_released) = (buttons.but_not(before), before.but_not(buttons));
         // Tracked outside the window, too, while the button is still down.
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
-        let drag = self.draw(anywhere.filter(|_| buttons.left));
+        let drag = self.drag(anywhere.filter(|_| buttons.left));
         let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
         // The window fills in how long the frame took.
         let (held, elapsed) = (self.held.clone(), 0.0);
@@ -208,8 +208,8 @@ impl Events {
     }
 
     /// How far the mouse moved since the last call, if its button was down then and is now.
-    fn draw(&mut self, at: Option<(f32, f32)>) -> (f32, f32) {
-        let from = mem::replace(&mut self.drawn_from, at);
+    fn drag(&mut self, at: Option<(f32, f32)>) -> (f32, f32) {
+        let from = mem::replace(&mut self.dragged_from, at);
         match (from, at) {
             (Some(from), Some(at)) => (at.0 - from.0, at.1 - from.1),
             _ => (0.0, 0.0),
@@ -281,9 +281,9 @@ mod tests {
     #[test]
     fn a_drag_begins_where_the_button_went_down() {
         let mut events = Events::default();
-        assert_eq!(events.draw(Some((100.0, 50.0))), (0.0, 0.0));
-        assert_eq!(events.draw(Some((103.0, 48.0))), (3.0, -2.0));
-        assert_eq!(events.draw(None), (0.0, 0.0));
-        assert_eq!(events.draw(Some((0.0, 0.0))), (0.0, 0.0));
+        assert_eq!(events.drag(Some((100.0, 50.0))), (0.0, 0.0));
+        assert_eq!(events.drag(Some((103.0, 48.0))), (3.0, -2.0));
+        assert_eq!(events.drag(None), (0.0, 0.0));
+        assert_eq!(events.drag(Some((0.0, 0.0))), (0.0, 0.0));
     }
 }

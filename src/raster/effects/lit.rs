@@ -81,7 +81,7 @@ fn places(first: usize) -> Lanes<f64> {
 }
 
 /// Pixels of several rows, pending until eight of them are lit together.
-struct Waiting {
+struct Pending {
     /// The first eight make up a full block; the rest is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
     /// The index of each among the pixels of all spans.
@@ -89,7 +89,7 @@ struct Waiting {
     count: usize,
 }
 
-impl Waiting {
+impl Pending {
     fn new() -> Self {
         let mut numerators = [[0.0; 2 * LANES]; 7];
         numerators[6] = [1.0; 2 * LANES];
@@ -101,8 +101,8 @@ impl Waiting {
     fn push(&mut self, numerators: &Numerators, first: usize, count: usize) {
         // At most seven are pending.
         let at = self.count % LANES;
-        for (i, waiting) in self.numerators.iter_mut().enumerate() {
-            if let Some(to) = waiting[at..].first_chunk_mut() {
+        for (i, pending) in self.numerators.iter_mut().enumerate() {
+            if let Some(to) = pending[at..].first_chunk_mut() {
                 *to = numerators[i];
             }
         }
@@ -131,9 +131,9 @@ impl Waiting {
     /// Removes the first eight, which have been lit.
     #[inline(always)]
     fn advance(&mut self) {
-        for waiting in &mut self.numerators {
+        for pending in &mut self.numerators {
             for lane in 0..LANES {
-                waiting[lane] = waiting[LANES + lane];
+                pending[lane] = pending[LANES + lane];
             }
         }
         for lane in 0..LANES {
@@ -189,7 +189,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
-    let mut waiting = Waiting::new();
+    let mut pending = Pending::new();
     let mut nothing = [(); ROOM];
     spans.each(
         &mut nothing,
@@ -210,16 +210,16 @@ fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mu
             }
             if first < length {
                 let numerators = lit::numerators(&places(first), &a, da, d, *dd);
-                waiting.push(&numerators, span.first + first, length - first);
-                if waiting.count >= LANES {
-                    waiting.light(light, &mut out);
-                    waiting.advance();
+                pending.push(&numerators, span.first + first, length - first);
+                if pending.count >= LANES {
+                    pending.light(light, &mut out);
+                    pending.advance();
                 }
             }
         },
     );
-    if waiting.count > 0 {
-        waiting.light(light, &mut out);
+    if pending.count > 0 {
+        pending.light(light, &mut out);
     }
 }
 
