@@ -101,7 +101,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 ///     let mut raster = Raster::new(frame).with_depth_memory(&mut depths);
 ///     // Each is farther away than the one of the frame before.
 ///     let corner = |x, y| Vertex::at(x, y, shade).with_depth(1_000 - shade as u32);
-///     raster.triangle(&[corner(0.0, 0.0), corner(31.0, 0.0), corner(0.0, 31.0)], Interpolation::Gouraud);
+///     raster.triangle(&[corner(0.0, 0.0), corner(31.0, 0.0), corner(0.0, 31.0)], Interpolation::default());
 /// }
 /// assert_eq!(bytes[0], 40);
 /// # Ok::<(), mode13h::raster::RasterError>(())

@@ -25,6 +25,9 @@ pub enum Interpolation {
     GouraudVintage,
     /// Linear between the vertices, each row of the triangle one span: the start is exact, with one addition per pixel
     /// from there on.
+    ///
+    /// This is [`Shading::Gouraud88`](crate::settings::Shading::Gouraud88), not the default, which is
+    /// [`GouraudReseeded`](Self::GouraudReseeded). In files and on the command line `gouraud` means the default.
     Gouraud,
     /// Linear between the vertices, each row of the triangle reseeded every 64 pixels.
     ///

@@ -216,7 +216,7 @@ impl<D: Cell> Raster<'_, D> {
     /// let [a, b, c, d] = [at(0, 0)?, at(8, 0)?, at(8, 4)?, at(0, 4)?];
     /// let mut bytes = [0_u8; 8 * 4];
     /// let drawn = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?)
-    ///     .triangles([[a, b, c], [a, c, d]].iter().map(|corners| (corners, Interpolation::Gouraud)));
+    ///     .triangles([[a, b, c], [a, c, d]].iter().map(|corners| (corners, Interpolation::default())));
     /// assert_eq!(drawn.pixels, 32);
     /// assert_eq!(bytes, [9; 32]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -296,7 +296,7 @@ impl<D: Cell> Raster<'_, D> {
     /// }
     /// let mut bytes = [0_u8; 8 * 4];
     /// let mut raster = Raster::new(Frame::new(&mut bytes, 8, 4, 8)?);
-    /// let drawn = raster.indexed(&table, &[[0, 1, 2], [0, 2, 3]], Interpolation::Gouraud);
+    /// let drawn = raster.indexed(&table, &[[0, 1, 2], [0, 2, 3]], Interpolation::default());
     /// assert_eq!(drawn.pixels, 32);
     /// assert_eq!(bytes, [9; 32]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -57,7 +57,7 @@ impl Vertex {
     /// let mut bytes = [0; 4 * 2];
     /// let mut raster = Raster::new(Frame::new(&mut bytes, 4, 2, 4)?);
     /// let [a, b, c] = [Vertex::at(0.0, 0.0, 10.0), Vertex::at(8.0, 0.0, 170.0), Vertex::at(0.0, 8.0, 10.0)];
-    /// raster.triangle(&[a, b, c], Interpolation::Gouraud);
+    /// raster.triangle(&[a, b, c], Interpolation::default());
     /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
     /// # Ok::<(), mode13h::raster::RasterError>(())
     /// ```
