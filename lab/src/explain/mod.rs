@@ -28,6 +28,7 @@
 //! # Ok::<(), explain::ExplainError>(())
 //! ```
 
+mod edge;
 mod face;
 mod one_pixel;
 mod paragraph;
@@ -40,7 +41,8 @@ mod trace;
 
 use crate::cost::ProbeError;
 use crate::truth::TruthError;
-pub use face::{Edge, EdgeKind, FaceHere};
+pub use edge::{Edge, EdgeKind};
+pub use face::FaceHere;
 pub use mode13h::internals::{Accumulator, Progression, Ratio, ShadeTrace};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Screen};

@@ -1,6 +1,7 @@
 //! Everything about one pixel.
 
-use super::face::{FaceHere, clockwise};
+use super::edge::clockwise;
+use super::face::FaceHere;
 use super::one_pixel::{Bytes, ShadedBy};
 use super::trace::{Fate, Met, trace};
 use super::{ExplainError, check};

@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use super::face::{EdgeKind, FaceHere};
+use super::edge::EdgeKind;
+use super::face::FaceHere;
 use super::one_pixel::ShadedBy;
 use super::paragraph::Text;
 use super::pixel::{Pixel, PixelStage, Seen};

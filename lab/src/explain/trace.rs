@@ -11,7 +11,7 @@ use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h::settings::HiddenSurfaces;
 
-use super::face::has_edge_at;
+use super::edge::has_edge_at;
 use super::one_pixel::{Bytes, OnePixel};
 
 /// A triangle that covers the pixel, or has an edge through its centre.
