@@ -502,6 +502,32 @@ fn draw_in_bands(
     pixels
 }
 
+/// Draws with any kernel and a depth buffer in columns of up to eight pixels, which begin anywhere between two pixels
+/// that decide a level. `None` where the buffer hides pixels, which must not change.
+fn draw_in_columns(
+    random: &mut Random,
+    vertices: &[Vertex; 3],
+    attributes: &[Attributes; 3],
+    look: &PixelPipeline<'_>,
+) -> Vec<Option<u8>> {
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let hidden: Vec<bool> = (0..WIDTH * HEIGHT).map(|_| random.within(0, 2) == 0).collect();
+    let mut depths: Vec<u32> = hidden.iter().map(|&is_hidden| if is_hidden { u32::MAX } else { 0 }).collect();
+    let (mut pixels, mut left, kernel) = (SIZE.pixels(), 0, random.one_of(&kernels));
+    while left < WIDTH as u32 {
+        let right = (left + random.within(1, 8) as u32).min(WIDTH as u32);
+        let clip = Rect { x0: left, x1: right, ..SIZE.rect() };
+        SIZE.draw(&mut pixels, SIZE.rows(), |frame| {
+            let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
+            let mut raster = Raster::new(frame).with_kernel(kernel).with_clip(clip).with_depth(buffer);
+            raster.triangle_with_effects(vertices, attributes, look);
+        });
+        left = right;
+    }
+    assert!(pixels.iter().zip(&hidden).all(|(&byte, &is_hidden)| !is_hidden || byte == BEFORE), "{vertices:?}");
+    pixels.into_iter().zip(hidden).map(|(byte, is_hidden)| (!is_hidden).then_some(byte)).collect()
+}
+
 /// Draws into the whole frame with a depth buffer.
 fn draw_deep<D: Cell>(
     size: Size,
@@ -982,7 +1008,7 @@ fn corners_of_any_numbers_draw_the_same_with_every_kernel() {
 }
 
 /// Every level is chosen for many pixels with every mapping: texels are the numbers of their levels, and each agrees
-/// with the oracle, with every kernel, whole or in bands.
+/// with the oracle, with every kernel, whole, in bands or in columns.
 #[test]
 fn levels_are_the_definition() {
     let mut tried = Tried::new("levels_are_the_definition", 600);
@@ -1010,6 +1036,11 @@ fn levels_are_the_definition() {
         let cut = random.within(1, i64::from(HEIGHT) - 1) as u32;
         let bands = draw_in_bands(SIZE, &vertices, &attributes, &look, cut);
         assert_eq!(bands, bytes, "{vertices:?}, in bands");
+        let columns = draw_in_columns(&mut random, &vertices, &attributes, &look);
+        assert!(
+            columns.iter().zip(&bytes).all(|(shown, byte)| shown.is_none_or(|shown| shown == *byte)),
+            "{vertices:?}"
+        );
         for y in 0..HEIGHT {
             let Some((first, last)) = naive.row(y) else { continue };
             for x in first..=last {
