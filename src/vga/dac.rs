@@ -7,9 +7,9 @@
 //! | 3C8h | index to write to | the index that the next third write would change |
 //! | 3C9h | red, green, blue in turn | red, green, blue in turn |
 //!
-//! As in the chip, reading and writing share one address register and one modulo-3 counter, as in the chip that IBM
-//! used (Inmos IMS G171). Setting a read index leaves the address one higher, so 3C8h then reads one more. Sources: IBM
-//! PS/2 technical reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does the same.
+//! Reading and writing share one address register and one modulo-3 counter, as in the chip that IBM used (Inmos IMS
+//! G171). Setting a read index leaves the address one higher, so 3C8h then reads one more. Sources: IBM PS/2 technical
+//! reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does the same.
 
 use core::ops::{Bound, RangeBounds};
 
