@@ -1,4 +1,4 @@
-//! What a C library needs and an `rlib` does not: an allocator in the caller's memory, and a panic handler.
+//! An allocator in the caller's memory and a panic handler, which a C library needs and an `rlib` does not.
 
 #[cfg(feature = "effects")]
 pub(crate) use arena::within;

@@ -58,9 +58,9 @@ pub(super) struct DrawnPixels {
     pub(super) length: usize,
     /// How many leading pixels of the span are skipped.
     pub(super) skipped: u32,
-    /// True if the depths of a single block have been tested, as soon as the span began.
+    /// False if a single block is yet to be tested when it is shown, as several blocks always are.
     is_tested: bool,
-    /// The mask of the pixels of such a block that stay as they are; all bits for more pixels.
+    /// The mask of the pixels that stay as they are, if a single block has been tested; otherwise all bits.
     stays: u64,
 }
 
@@ -173,7 +173,8 @@ pub(super) struct Masked<'a> {
 }
 
 impl Masked<'_> {
-    /// Tests the pixels of span `i` if they are a single block, as most are. Returns `None` if all are hidden.
+    /// Tests the depths of `pixels`, all the drawn ones of span `i`, if they are a single block, as most are. Returns
+    /// `None` if all are hidden.
     #[inline(always)]
     fn test<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize, mut pixels: DrawnPixels) -> Option<DrawnPixels> {
         let DrawnPixels { at, length, .. } = pixels;
