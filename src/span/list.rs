@@ -320,6 +320,13 @@ impl SpanList {
         Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
     }
 
+    /// The shade of span `k`, with the step in the upper half.
+    #[cfg(simd_x86_64)]
+    #[inline(always)]
+    pub(crate) fn paint(&self, k: usize) -> &u32 {
+        &self.paint[k.min(CAPACITY)]
+    }
+
     /// The depth of span `k`, which is below [`count`](Self::count).
     #[inline(always)]
     pub(crate) fn depth(&self, k: usize) -> SpanDepth {

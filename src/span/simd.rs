@@ -329,11 +329,10 @@ pub(crate) mod avx2 {
             }
             return;
         }
-        let paint = spans.span(k).paint;
-        let (shade, step) = (paint as u16, (paint >> 16) as u16);
         if n <= 16
             && let Some(row) = pixels.get_mut(at..at + 16)
         {
+            let [shade, step] = halves(spans.paint(k));
             let bytes = sse2::Block::new(shade, step).bytes();
             // SAFETY: sixteen of 64 bytes, and the sixteen of the row. No load or store requires alignment.
             unsafe {
@@ -345,17 +344,35 @@ pub(crate) mod avx2 {
         if n <= 32
             && let Some(row) = pixels.get_mut(at..at + 32)
         {
+            let [shade, step] = halves(spans.paint(k));
             let bytes = Block::new(shade, step).bytes();
-            // SAFETY: 32 of 64 bytes; the load requires no alignment.
-            let stays = unsafe { _mm256_loadu_si256(stays.cast()) };
-            // SAFETY: 32 bytes; the load requires no alignment.
-            let before = unsafe { _mm256_loadu_si256(row.as_ptr().cast()) };
-            // SAFETY: 32 bytes; the store requires no alignment.
-            unsafe { _mm256_storeu_si256(row.as_mut_ptr().cast(), _mm256_blendv_epi8(bytes, before, stays)) };
+            // SAFETY: 32 of 64 bytes, and the 32 of the row. No load or store requires alignment.
+            unsafe {
+                let (stays, before) = (_mm256_loadu_si256(stays.cast()), _mm256_loadu_si256(row.as_ptr().cast()));
+                _mm256_storeu_si256(row.as_mut_ptr().cast(), _mm256_blendv_epi8(bytes, before, stays));
+            }
             return;
         }
+        if n > 32
+            && let Some(row) = pixels.get_mut(at..at + n)
+        {
+            let [shade, step] = halves(spans.paint(k));
+            return blocks(row, shade, step);
+        }
         if let Some(row) = pixels.get_mut(at..at + n) {
-            if n > 32 { blocks(row, shade, step) } else { vectors(row, shade, step) }
+            let [shade, step] = halves(spans.paint(k));
+            vectors(row, shade, step);
+        }
+    }
+
+    /// The lower half of a number and the upper, read one by one, so that a vector of either is broadcast from memory.
+    #[inline(always)]
+    fn halves(number: &u32) -> [u16; 2] {
+        // SAFETY: four readable bytes, of which x86 stores the lower half first; two numbers of 16 bits require no more
+        // alignment than one of 32.
+        unsafe {
+            let lower = core::ptr::from_ref(number).cast::<u16>();
+            [*lower, *lower.add(1)]
         }
     }
 
@@ -371,8 +388,16 @@ pub(crate) mod avx2 {
         #[inline]
         #[target_feature(enable = "avx2")]
         fn new(shade: u16, step: u16) -> Self {
+            Self::at(0, shade, step)
+        }
+
+        /// The block whose first pixel is pixel `n` of a row, modulo 65,536, whose first has `shade`.
+        #[inline]
+        #[target_feature(enable = "avx2")]
+        fn at(n: u16, shade: u16, step: u16) -> Self {
             let steps = _mm256_set1_epi16(step as i16);
             let lanes = _mm256_setr_epi16(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+            let lanes = _mm256_add_epi16(lanes, _mm256_set1_epi16(n as i16));
             let even = _mm256_add_epi16(_mm256_mullo_epi16(steps, lanes), _mm256_set1_epi16(shade as i16));
             Self { even, odd: _mm256_add_epi16(even, steps) }
         }
@@ -424,22 +449,20 @@ pub(crate) mod avx2 {
     fn blocks(row: &mut [u8], shade: u16, step: u16) {
         let n = row.len();
         let first = Block::new(shade, step);
-        let to_last = step.wrapping_mul((n - 32) as u16);
-        let last = first.raised(_mm256_set1_epi16(to_last as i16));
-        if let Some(to) = row.first_chunk_mut::<32>() {
+        let last = Block::at(n.wrapping_sub(32) as u16, shade, step); // modulo 65,536, like the shades
+        if let Some((to, rest)) = row.split_first_chunk_mut::<32>() {
             first.store(to);
-        }
-        if n > 64 {
-            let by = _mm256_set1_epi16(step.wrapping_mul(32) as i16);
-            let (blocks, _) = row.as_chunks_mut::<32>();
-            let mut block = first;
-            for to in blocks.iter_mut().skip(1) {
-                block = block.raised(by);
-                block.store(to);
+            if n > 64 {
+                let by = _mm256_set1_epi16(step.wrapping_mul(32) as i16);
+                let (blocks, _) = rest.as_chunks_mut::<32>();
+                let mut block = first;
+                for to in blocks {
+                    block = block.raised(by);
+                    block.store(to);
+                }
             }
-        }
-        if let Some(to) = row.last_chunk_mut::<32>() {
-            last.store(to);
+            // SAFETY: the row has at least 32 bytes, and these are its last; the store requires no alignment.
+            unsafe { _mm256_storeu_si256(row.as_mut_ptr().add(n - 32).cast(), last.bytes()) }
         }
     }
 }
