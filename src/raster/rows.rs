@@ -189,13 +189,13 @@ pub(super) trait Shades8 {
         parts: &Parts<S>,
     ) -> (S::I32, Self::Columns<S>);
 
-    /// Appends eight spans to a list.
-    fn append<S: Lanes8, const DEPTHS: bool>(
+    /// Appends eight spans to a list, with the change of their depths if it has depths.
+    fn append<S: Lanes8>(
         &mut self,
         s: S,
         list: &mut SpanList,
         spans: &Spans8<S, Self::Columns<S>>,
-        dz: DepthSteps<S>,
+        dz: Option<DepthSteps<S>>,
     );
 
     /// Completes the set-up of triangle `i` of the eight, which is not a small one.
@@ -251,14 +251,8 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
     }
 
     #[inline(always)]
-    fn append<S: Lanes8, const DEPTHS: bool>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, ()>,
-        dz: DepthSteps<S>,
-    ) {
-        list.append::<S, _, DEPTHS>(s, spans, dz);
+    fn append<S: Lanes8>(&mut self, s: S, list: &mut SpanList, spans: &Spans8<S, ()>, dz: Option<DepthSteps<S>>) {
+        list.append(s, spans, dz);
     }
 
     #[inline(always)]
@@ -339,43 +333,43 @@ struct RowCursor8<S: Lanes8> {
 
 impl<S: Lanes8> RowCursor8<S> {
     #[inline(always)]
-    fn new<const DEPTHS: bool>(s: S, setup: &TriangleSetup8) -> Self {
+    fn new(s: S, setup: &TriangleSetup8, has_depths: bool) -> Self {
         let at = s.load_i32(&setup.at);
         Self {
             at,
-            cell: if DEPTHS { s.load_i32(&setup.cell) } else { at },
-            z: if DEPTHS { s.load_i64(&setup.z) } else { s.splat_i64(0) },
+            cell: if has_depths { s.load_i32(&setup.cell) } else { at },
+            z: if has_depths { s.load_i64(&setup.z) } else { s.splat_i64(0) },
         }
     }
 
     /// Returns row `number`, and advances to the next.
     #[inline(always)]
-    fn next<P: Shades8, const DEPTHS: bool>(
+    fn next<P: Shades8>(
         &mut self,
         s: S,
         setup: &TriangleSetup8,
         shades: &P,
         list: &SpanList,
-        number: i32,
+        (number, has_depths): (i32, bool),
     ) -> Spans8<S, P::Columns<S>> {
         if const { is_apart::<S, P>() } {
             s.apart(
                 #[inline(always)]
-                || self.row::<P, DEPTHS>(s, setup, shades, list, number),
+                || self.row(s, setup, shades, list, (number, has_depths)),
             )
         } else {
-            self.row::<P, DEPTHS>(s, setup, shades, list, number)
+            self.row(s, setup, shades, list, (number, has_depths))
         }
     }
 
     #[inline(always)]
-    fn row<P: Shades8, const DEPTHS: bool>(
+    fn row<P: Shades8>(
         &mut self,
         s: S,
         setup: &TriangleSetup8,
         shades: &P,
         list: &SpanList,
-        number: i32,
+        (number, has_depths): (i32, bool),
     ) -> Spans8<S, P::Columns<S>> {
         let lane = EachTriangle;
         let j = s.splat_f64(f64::from(number));
@@ -384,7 +378,7 @@ impl<S: Lanes8> RowCursor8<S> {
         let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
         let is_row = s.is_greater(s.load_i32(&setup.rows), number);
         let mut z = self.z;
-        if DEPTHS {
+        if has_depths {
             z = s.add_i64(z, s.mul_low_i64(s.bits(ends.left), s.load_i64(&setup.z_per_column)));
             self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
@@ -399,7 +393,7 @@ impl<S: Lanes8> RowCursor8<S> {
             columns,
         };
         self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
-        if DEPTHS {
+        if has_depths {
             self.cell = s.add_i32(self.cell, s.splat_i32(list.width));
         }
         spans
@@ -420,6 +414,19 @@ const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
 }
 
+/// Returns whether spans have depths: if their list may have them, and there are cells. Linear shades are compiled for
+/// either, others decide here.
+#[inline(always)]
+pub(super) fn has_depths<P: Shades8, const DEPTHS: bool>(list: &SpanList) -> bool {
+    DEPTHS && (P::IS_LINEAR || list.has_cells())
+}
+
+/// The change of depth of triangle `i`, if spans have depths.
+#[inline(always)]
+fn depth_steps<S: Lanes8>(setup: &TriangleSetup8, i: usize, has_depths: bool) -> Option<DepthSteps<S>> {
+    if has_depths { Some(DepthSteps::All(setup.z_per_column[i % LANES])) } else { None }
+}
+
 /// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that
 /// the call is not compiled for the other levels.
 #[inline(always)]
@@ -429,20 +436,20 @@ pub(super) fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
 
 /// Appends spans by [`Shades8::append`], which is called or inlined as the level requires.
 #[inline(always)]
-fn append<S: Lanes8, P: Shades8, const DEPTHS: bool>(
+fn append<S: Lanes8, P: Shades8>(
     s: S,
     shades: &mut P,
     list: &mut SpanList,
     spans: &Spans8<S, P::Columns<S>>,
-    dz: DepthSteps<S>,
+    dz: Option<DepthSteps<S>>,
 ) {
     if const { is_apart::<S, P>() } {
         s.apart(
             #[inline(always)]
-            || shades.append::<S, DEPTHS>(s, list, spans, dz),
+            || shades.append(s, list, spans, dz),
         );
     } else {
-        shades.append::<S, DEPTHS>(s, list, spans, dz);
+        shades.append(s, list, spans, dz);
     }
 }
 
@@ -456,39 +463,40 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     most_rows: i32,
     list: &mut SpanList,
 ) {
-    let mut cursor = RowCursor8::new::<DEPTHS>(s, setup);
+    let has_depths = has_depths::<P, DEPTHS>(list);
+    let mut cursor = RowCursor8::new(s, setup, has_depths);
     let dz = |i: usize| setup.z_per_column[i];
     if most_rows <= 0 {
         return;
     }
-    let first = cursor.next::<P, DEPTHS>(s, setup, shades, list, 0);
+    let first = cursor.next(s, setup, shades, list, (0, has_depths));
     if most_rows == 1 {
-        let dz = if DEPTHS { DepthSteps::Each(s.load_i64(&setup.z_per_column)) } else { DepthSteps::All(0) };
-        append::<S, P, DEPTHS>(s, shades, list, &first, dz);
+        let dz = if has_depths { Some(DepthSteps::Each(s.load_i64(&setup.z_per_column))) } else { None };
+        append(s, shades, list, &first, dz);
         return;
     }
-    let second = cursor.next::<P, DEPTHS>(s, setup, shades, list, 1);
+    let second = cursor.next(s, setup, shades, list, (1, has_depths));
     if most_rows == 2 {
-        let [low, high] = first.zip(s, &second, list, DEPTHS);
-        let (mut of_low, mut of_high) = (DepthSteps::All(0), DepthSteps::All(0));
-        if DEPTHS {
+        let [low, high] = first.zip(s, &second, list, has_depths);
+        let (mut of_low, mut of_high) = (None, None);
+        if has_depths {
             let dz = s.load_i64(&setup.z_per_column);
             let [low, high] = s.interleave_i64(dz, dz);
-            (of_low, of_high) = (DepthSteps::Each(low), DepthSteps::Each(high));
+            (of_low, of_high) = (Some(DepthSteps::Each(low)), Some(DepthSteps::Each(high)));
         }
-        append::<S, P, DEPTHS>(s, shades, list, &low, of_low);
-        append::<S, P, DEPTHS>(s, shades, list, &high, of_high);
+        append(s, shades, list, &low, of_low);
+        append(s, shades, list, &high, of_high);
         return;
     }
-    let third = cursor.next::<P, DEPTHS>(s, setup, shades, list, 2);
-    let fourth = cursor.next::<P, DEPTHS>(s, setup, shades, list, 3);
-    let even = first.zip(s, &third, list, DEPTHS);
-    let odd = second.zip(s, &fourth, list, DEPTHS);
+    let third = cursor.next(s, setup, shades, list, (2, has_depths));
+    let fourth = cursor.next(s, setup, shades, list, (3, has_depths));
+    let even = first.zip(s, &third, list, has_depths);
+    let odd = second.zip(s, &fourth, list, has_depths);
     for (half, even) in even.iter().enumerate() {
-        for (quarter, spans) in even.zip(s, &odd[half], list, DEPTHS).iter().enumerate() {
+        for (quarter, spans) in even.zip(s, &odd[half], list, has_depths).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
-            let dz = if DEPTHS { DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1))) } else { DepthSteps::All(0) };
-            append::<S, P, DEPTHS>(s, shades, list, spans, dz);
+            let dz = if has_depths { Some(DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1)))) } else { None };
+            append(s, shades, list, spans, dz);
         }
     }
 }
@@ -507,7 +515,7 @@ struct EightRows<S: Lanes8> {
 impl<S: Lanes8> EightRows<S> {
     /// Rows of triangle `i` from row `first` on. Those beyond its last have no length.
     #[inline(always)]
-    fn new<const DEPTHS: bool>(s: S, setup: &TriangleSetup8, (i, first): (usize, i32), list: &SpanList) -> Self {
+    fn new(s: S, setup: &TriangleSetup8, (i, first): (usize, i32), list: &SpanList, has_depths: bool) -> Self {
         let lane = OneTriangle(i);
         let number = s.add_i32(s.splat_i32(first), s.load_i32(&NUMBERS));
         let j = s.to_f64(number);
@@ -516,7 +524,7 @@ impl<S: Lanes8> EightRows<S> {
         let (left, right) = (s.low_bits(ends.left), s.low_bits(ends.right));
         let at = s.add_i32(lane.load_i32(s, &setup.at), s.mul_i32(number, s.splat_i32(list.pitch)));
         let (mut cell, mut z) = (at, s.splat_i64(0));
-        if DEPTHS {
+        if has_depths {
             cell = s.add_i32(lane.load_i32(s, &setup.cell), s.mul_i32(number, s.splat_i32(list.width)));
             // Not negative: below 2¹².
             z = s.mul_low_i64(s.to_i64(number), lane.load_i64(s, &setup.z_per_row));
@@ -546,8 +554,29 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     (i, first): (usize, i32),
     list: &mut SpanList,
 ) {
-    let spans = EightRows::new::<DEPTHS>(s, setup, (i, first), list).spans(s, setup, shades, i);
-    shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+    let has_depths = has_depths::<P, DEPTHS>(list);
+    // Compiled for both where registers are few: they would be spilled around conditions further inside.
+    if const { align_of::<S::F64>() == 32 } && has_depths {
+        eight_rows(s, setup, shades, (i, first), list, true);
+    } else if const { align_of::<S::F64>() == 32 } {
+        eight_rows(s, setup, shades, (i, first), list, false);
+    } else {
+        eight_rows(s, setup, shades, (i, first), list, has_depths);
+    }
+}
+
+/// [`list_eight_rows`], with depths or without.
+#[inline(always)]
+fn eight_rows<S: Lanes8, P: Shades8>(
+    s: S,
+    setup: &TriangleSetup8,
+    shades: &mut P,
+    (i, first): (usize, i32),
+    list: &mut SpanList,
+    has_depths: bool,
+) {
+    let spans = EightRows::new(s, setup, (i, first), list, has_depths).spans(s, setup, shades, i);
+    shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
 }
 
 /// Lists eight rows of triangle `i` from row `first` on, each split into reseeded pieces of up to `longest` pixels.
@@ -563,10 +592,11 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let lane = OneTriangle(i);
-    let rows = EightRows::new::<DEPTHS>(s, setup, (i, first), list);
+    let has_depths = has_depths::<P, DEPTHS>(list);
+    let rows = EightRows::new(s, setup, (i, first), list, has_depths);
     if clip.is_none() && s.to_bitmask(s.is_greater(rows.length, s.splat_i32(longest))) == 0 {
         let spans = rows.spans(s, setup, shades, i);
-        shades.append::<S, DEPTHS>(s, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
         return;
     }
     let ends = &rows.ends;
@@ -604,10 +634,10 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             cell: s.add_i32(rows.cell, moved),
             length: s.select_i32(is_row, length, s.splat_i32(0)),
             paint,
-            z: if DEPTHS { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
+            z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             columns,
         };
-        append::<S, P, DEPTHS>(s, shades, list, &spans, DepthSteps::All(setup.z_per_column[i % LANES]));
+        append(s, shades, list, &spans, depth_steps(setup, i, has_depths));
         left = end;
         if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;

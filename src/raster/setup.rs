@@ -259,15 +259,15 @@ impl TriangleSetup8 {
         self.z_per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(z) << 8;
     }
 
-    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; with `DEPTHS` the depth
-    /// planes of small ones too, and if it `has_planes` those of linear shades. Returns the basis for
-    /// setting up other planes.
+    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; if asked for, the depth planes of small ones
+    /// too, and the planes of linear shades. Returns the basis for setting up other planes.
     #[inline(always)]
-    pub(super) fn set_up<S: Lanes8, const DEPTHS: bool>(
+    pub(super) fn set_up<S: Lanes8>(
         &mut self,
         s: S,
         corners: &Corners8,
         layout: FrameLayout,
+        has_depths: bool,
         has_planes: bool,
     ) -> Basis<S> {
         let [ax, ay] = s.halves_of_i64(s.load_i64(&corners.at[0]));
@@ -286,7 +286,7 @@ impl TriangleSetup8 {
         s.store_i32(column, &mut self.column);
         s.store_i32(row, &mut self.row);
         s.store_i32(s.add_i32(s.mul_i32(down, pitch), column), &mut self.at);
-        if DEPTHS {
+        if has_depths {
             s.store_i32(s.add_i32(s.mul_i32(down, width), column), &mut self.cell);
         }
 
@@ -330,7 +330,7 @@ impl TriangleSetup8 {
         let has_area = s.is_less(s.splat_f64(0.0), area);
         s.store_i32(s.select_i32(has_area, rows, s.splat_i32(0)), &mut self.rows);
 
-        if DEPTHS {
+        if has_depths {
             let [d0, d1, d2] = basis.order.load(s, &corners.depth);
             let depth = s.unsigned_to_f64(d0);
             let (dd1, dd2) = (s.sub(s.unsigned_to_f64(d1), depth), s.sub(s.unsigned_to_f64(d2), depth));
@@ -624,6 +624,6 @@ mod tests {
 
     #[inline(always)]
     fn set_up_by<S: Lanes8>(s: S, setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) {
-        setup.set_up::<S, true>(s, corners, layout, true);
+        setup.set_up(s, corners, layout, true, true);
     }
 }

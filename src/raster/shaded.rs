@@ -415,14 +415,14 @@ impl Shades8 for Shaded8<'_> {
     }
 
     #[inline(always)]
-    fn append<S: Lanes8, const DEPTHS: bool>(
+    fn append<S: Lanes8>(
         &mut self,
         s: S,
         list: &mut SpanList,
         spans: &Spans8<S, Starts8<S, 2>>,
-        dz: DepthSteps<S>,
+        dz: Option<DepthSteps<S>>,
     ) {
-        let places = list.append::<S, _, DEPTHS>(s, spans, dz);
+        let places = list.append(s, spans, dz);
         if self.kind == Kind::Fixed16 {
             self.starts.put_first(s, places, spans.columns.0[0]);
         } else {

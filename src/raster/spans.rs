@@ -152,7 +152,7 @@ impl<D: Cell> Raster<'_, D> {
         let (pixels, _) = self.frame.pixels_mut();
         let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
         let of_pixels = (target.pixels.len(), layout.pitch);
-        list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
+        list.begin(of_pixels, target.cells.as_ref().map(|cells| (cells.len(), layout.width)));
         triangle.rows(width, clip, |row| {
             // A row of the frame.
             let down = (row.y as u32 - layout.first_row) as usize;
@@ -218,7 +218,7 @@ fn draw_by<S: Lanes8, const FLAT: bool, const DEPTHS: bool>(
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    draw_triangles::<S, _, DEPTHS, DEPTHS>(s, of, place, target, &mut { Linear::<FLAT>::NONE }, list)
+    draw_triangles::<S, _, DEPTHS>(s, of, place, target, &mut { Linear::<FLAT>::NONE }, list)
 }
 
 compiled_for_each_level! {
@@ -242,7 +242,7 @@ fn draw_shaded_by<S: Lanes8>(
         return DrawStats::default();
     }
     let mut shades = Shaded8::new(kind, of.triangles, of.picks, place.0);
-    draw_triangles::<S, _, true, true>(s, of, place, target, &mut shades, list)
+    draw_triangles::<S, _, true>(s, of, place, target, &mut shades, list)
 }
 
 /// Reads the corners of the first eight of these triangles.
@@ -255,10 +255,9 @@ fn gather<P: Shades8, const DEPTHS: bool>(corners: &mut Corners8, triangles: &Tr
     }
 }
 
-/// Draws triangles: with `DEPTHS`, only where they are nearer than the target's cells; with
-/// `LISTED`, the list has depths.
+/// Draws triangles; if there are cells, only where they are nearer. `DEPTHS` may be false if there are none.
 #[inline(always)]
-pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LISTED: bool>(
+pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
     (layout, clip): Place,
@@ -271,9 +270,8 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
         return DrawStats::default();
     }
     let of_pixels = (target.pixels.len(), layout.pitch);
-    // Depths are not used without cells.
-    let has_cells = target.cells.is_some();
-    list.begin(of_pixels, target.cells.as_ref().map_or(of_pixels, |cells| (cells.len(), layout.width)));
+    list.begin(of_pixels, target.cells.as_ref().map(|cells| (cells.len(), layout.width)));
+    let has_depths = rows::has_depths::<P, DEPTHS>(list);
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
@@ -281,14 +279,14 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
     gather::<P, DEPTHS>(&mut corners, triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
-            shades.draw::<S, LISTED>(s, list, target);
+            shades.draw::<S, DEPTHS>(s, list, target);
         }
         shades.begin(number * LANES);
         rows::part(
             s,
             #[inline(always)]
             || {
-                let basis = setup.set_up::<S, DEPTHS>(s, &corners, layout, shades.has_planes());
+                let basis = setup.set_up(s, &corners, layout, has_depths, shades.has_planes());
                 shades.set_up(s, &basis, &corners, &setup);
             },
         );
@@ -300,13 +298,13 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             setup.rows[eight.len()..].fill(0);
         }
         if !list.has_room(LANES * LANES) {
-            shades.draw::<S, LISTED>(s, list, target);
+            shades.draw::<S, DEPTHS>(s, list, target);
         }
         let are_small = Pick::are_small(eight);
         if are_small {
             let most = setup.rows.iter().fold(0, |most, &rows| if rows > most { rows } else { most });
             if most <= rows::MAX_SHORT_ROWS {
-                rows::list_short::<S, P, LISTED>(s, &setup, shades, most, list);
+                rows::list_short::<S, P, DEPTHS>(s, &setup, shades, most, list);
                 continue;
             }
         }
@@ -315,9 +313,9 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
                     if !list.has_room(LANES) {
-                        shades.draw::<S, LISTED>(s, list, target);
+                        shades.draw::<S, DEPTHS>(s, list, target);
                     }
-                    rows::list_eight_rows::<S, P, LISTED>(s, &setup, shades, (i, first), list);
+                    rows::list_eight_rows::<S, P, DEPTHS>(s, &setup, shades, (i, first), list);
                 }
                 continue;
             }
@@ -325,7 +323,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             if rows <= 0 {
                 continue;
             }
-            if DEPTHS {
+            if has_depths {
                 setup.put_depth_plane(i, &of.depth_plane(number * LANES + i).raised_by(layout.depth_base));
             }
             shades.set_up_large(i, &setup);
@@ -341,21 +339,21 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool, const LI
             }
             while first < end {
                 if !list.has_room(LANES * pieces) {
-                    shades.draw::<S, LISTED>(s, list, target);
+                    shades.draw::<S, DEPTHS>(s, list, target);
                 }
                 let (part, cut) = ((i, first), (pieces, longest));
                 rows::part(
                     s,
                     #[inline(always)]
-                    || rows::list_pieces::<S, P, LISTED>(s, &setup, shades, part, cut, (clip, layout.width), list),
+                    || rows::list_pieces::<S, P, DEPTHS>(s, &setup, shades, part, cut, (clip, layout.width), list),
                 );
                 first += LANES as i32;
             }
         }
     }
-    shades.draw::<S, LISTED>(s, list, target);
+    shades.draw::<S, DEPTHS>(s, list, target);
     let (spans, covered, nearer) = list.counts();
-    let (pixels, tested) = if DEPTHS && has_cells { (nearer, covered) } else { (covered, 0) };
+    let (pixels, tested) = if has_depths { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
 }
 

@@ -40,13 +40,16 @@ pub(crate) struct SpanList {
     z: Depths,
     dz: Depths,
     count: usize,
-    /// Number of pixels and cells.
+    /// Number of pixels and cells inside which spans lie. If both have the same offset, that of pixels is no more than
+    /// that of cells.
     pixels: i32,
     cells: i32,
     /// Pixels from one row to the next.
     pub(crate) pitch: i32,
     /// Cells from one row to the next.
     pub(crate) width: i32,
+    /// True if there are cells.
+    has_cells: bool,
     /// True if that is the same for both, so that pixels and their cells have the same offset.
     cells_are_pixels: bool,
     /// Pixels of all spans so far, as eight partial sums.
@@ -140,6 +143,7 @@ impl SpanList {
             cells: 0,
             pitch: 0,
             width: 0,
+            has_cells: false,
             cells_are_pixels: true,
             covered: [0; LANES],
             drawn: 0,
@@ -147,22 +151,28 @@ impl SpanList {
         }
     };
 
-    /// An empty list for these numbers of pixels and cells, each with its pitch.
+    /// An empty list for this number of pixels, and of cells if there are any, each with its pitch.
     #[inline(always)]
-    pub(crate) fn new(pixels: (usize, u32), cells: (usize, u32)) -> Self {
+    pub(crate) fn new(pixels: (usize, u32), cells: Option<(usize, u32)>) -> Self {
         let mut list = Self::NONE;
         list.begin(pixels, cells);
         list
     }
 
-    /// Empties the list, for other pixels and cells, and resets its counts.
+    /// Empties the list, for other pixels and cells if there are any, and resets its counts.
     #[inline(always)]
-    pub(crate) fn begin(&mut self, (pixels, pitch): (usize, u32), (cells, width): (usize, u32)) {
+    pub(crate) fn begin(&mut self, (pixels, pitch): (usize, u32), cells: Option<(usize, u32)>) {
+        let (cell_count, width) = cells.unwrap_or((pixels, pitch));
         // No frame has offsets beyond that.
         let most = |length: usize| length.min(i32::MAX as usize) as i32;
         (self.pixels, self.pitch) = (most(pixels), pitch as i32);
-        (self.cells, self.width) = (most(cells), width as i32);
+        (self.cells, self.width) = (most(cell_count), width as i32);
+        self.has_cells = cells.is_some();
         self.cells_are_pixels = pitch == width;
+        if self.cells_are_pixels {
+            // Spans that lie inside the pixels lie inside the cells.
+            self.pixels = self.pixels.min(self.cells);
+        }
         (self.count, self.covered, self.drawn, self.nearer) = (0, [0; LANES], 0, 0);
     }
 
@@ -177,6 +187,12 @@ impl SpanList {
         self.count + spans <= CAPACITY
     }
 
+    /// Returns whether there are cells, so that spans need depths.
+    #[inline(always)]
+    pub(crate) fn has_cells(&self) -> bool {
+        self.has_cells
+    }
+
     /// Returns whether rows of pixels and of cells have the same length, so that pixels and their cells have the same
     /// offset.
     #[inline(always)]
@@ -186,35 +202,31 @@ impl SpanList {
 
     /// The mask of those of these eight spans that have a length and lie inside.
     #[inline(always)]
-    fn inside<S: Lanes8, C, const DEPTHS: bool>(&self, s: S, spans: &Spans8<S, C>) -> S::Mask {
+    fn inside<S: Lanes8, C>(&self, s: S, spans: &Spans8<S, C>, has_depths: bool) -> S::Mask {
         // Each is negative if a span has no length, begins before the pixels, ends beyond 2³¹, or ends beyond the
         // pixels.
         let end = s.add_i32(spans.at, spans.length);
         let mut sign = s.or_i32(s.sub_i32(spans.length, s.splat_i32(1)), s.or_i32(spans.at, end));
         sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.pixels), end));
-        if DEPTHS {
-            if self.cells_are_pixels() {
-                sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
-            } else {
-                let end = s.add_i32(spans.cell, spans.length);
-                sign = s.or_i32(sign, s.or_i32(spans.cell, end));
-                sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
-            }
+        if has_depths && !self.cells_are_pixels() {
+            let end = s.add_i32(spans.cell, spans.length);
+            sign = s.or_i32(sign, s.or_i32(spans.cell, end));
+            sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
         }
         s.is_greater(sign, s.splat_i32(-1))
     }
 
-    /// Appends those of eight spans that have a length and lie inside. If there is no room for eight, some are dropped.
-    /// Returns which were appended, and the index of the first.
+    /// Appends those of eight spans that have a length and lie inside, with depths if given their change per pixel. If
+    /// there is no room for eight, some are dropped. Returns which were appended, and the index of the first.
     #[inline(always)]
-    pub(crate) fn append<S: Lanes8, C, const DEPTHS: bool>(
+    pub(crate) fn append<S: Lanes8, C>(
         &mut self,
         s: S,
         spans: &Spans8<S, C>,
-        dz: DepthSteps<S>,
+        dz: Option<DepthSteps<S>>,
     ) -> (S::Mask, usize) {
         let &Spans8 { at, cell, length, paint, z, .. } = spans;
-        let mask = self.inside::<S, C, DEPTHS>(s, spans);
+        let mask = self.inside(s, spans, dz.is_some());
         let covered = s.select_i32(mask, length, s.splat_i32(0));
         s.store_i32(s.add_i32(s.load_i32(&self.covered), covered), &mut self.covered);
         let count = self.count.min(CAPACITY);
@@ -223,7 +235,7 @@ impl SpanList {
             [at, length, paint],
             [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.paint, count)],
         );
-        if DEPTHS {
+        if let Some(dz) = dz {
             if !self.cells_are_pixels() {
                 s.compress_i32(mask, [cell], [eight(&mut self.cell, count)]);
             }

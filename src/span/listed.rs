@@ -32,10 +32,10 @@ pub struct ListedDepths {
 
 /// Draws spans in order, as batches do with this kernel, if they lie inside the pixels.
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[ListedSpan]) {
-    let mut list = SpanList::new((pixels.len(), 0), (0, 0));
+    let mut list = SpanList::new((pixels.len(), 0), None);
     let target = &mut Target { pixels, cells: None, kernel };
     for eight in spans.chunks(LANES) {
-        list.append::<Portable, (), false>(Portable, &lanes(eight), DepthSteps::All(0));
+        list.append(Portable, &lanes(eight), None);
         if !list.has_room(LANES) {
             list.draw_by::<false>(target);
         }
@@ -54,7 +54,7 @@ pub fn fill_where_nearer<D: Cell>(
 ) -> u32 {
     // With one pitch, or with two, so that cells have offsets of their own.
     let is_shared = spans.iter().zip(depths).all(|(span, depths)| span.at == depths.at);
-    let mut list = SpanList::new((pixels.len(), 0), (cells.len(), u32::from(!is_shared)));
+    let mut list = SpanList::new((pixels.len(), 0), Some((cells.len(), u32::from(!is_shared))));
     let target = &mut Target { pixels, cells: Some(D::cells(cells)), kernel };
     for (spans, depths) in spans.chunks(LANES).zip(depths.chunks(LANES)) {
         let mut eight = lanes(spans);
@@ -62,7 +62,7 @@ pub fn fill_where_nearer<D: Cell>(
         for (i, depths) in depths.iter().enumerate() {
             (eight.cell[i], eight.z[i], dz[i]) = (depths.at.cast_signed(), depths.z << 8, depths.dz << 8);
         }
-        list.append::<Portable, (), true>(Portable, &eight, DepthSteps::Each(dz));
+        list.append(Portable, &eight, Some(DepthSteps::Each(dz)));
         if !list.has_room(LANES) {
             list.draw_by::<true>(target);
         }

@@ -652,14 +652,14 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
     }
 
     #[inline(always)]
-    fn append<S: Lanes8, const DEPTHS: bool>(
+    fn append<S: Lanes8>(
         &mut self,
         s: S,
         list: &mut SpanList,
         spans: &Spans8<S, Marks8<S, MAPPED>>,
-        dz: DepthSteps<S>,
+        dz: Option<DepthSteps<S>>,
     ) {
-        let places = list.append::<S, _, DEPTHS>(s, spans, dz);
+        let places = list.append(s, spans, dz);
         let Marks8 { numbers, texture, coordinates, sums, .. } = spans.columns;
         self.listed.numbers.put(s, places, numbers, 2 + self.listed.wanted.slots);
         match mapping::<MAPPED>(texture) {

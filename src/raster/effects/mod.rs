@@ -153,7 +153,7 @@ impl EffectScratch {
     ) {
         self.make_room();
         let Some((list, columns)) = self.lists.first_mut() else { return };
-        list.begin((pixels.len(), 0), (pixels.len(), 0));
+        list.begin((pixels.len(), 0), None);
         let mut target = Target { pixels, cells: None, kernel };
         let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers);
         spans.walk(k, 0);
@@ -285,7 +285,7 @@ fn draw_effects_by<S: Lanes8, const MAPPED: u8>(
     if const { align_of::<S::F64>() <= 16 } {
         return draw_at_baseline(of, (spans, list), place, target);
     }
-    draw_triangles::<S, _, true, true>(s, of, place, target, &mut spans.with_mapping::<MAPPED>(), list)
+    draw_triangles::<S, _, true>(s, of, place, target, &mut spans.with_mapping::<MAPPED>(), list)
 }
 
 /// Draws triangles with effects, using only instructions that every processor of the target has.
@@ -296,7 +296,7 @@ fn draw_at_baseline(
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_triangles::<_, _, true, true>(BASELINE, of, place, target, &mut spans, list)
+    draw_triangles::<_, _, true>(BASELINE, of, place, target, &mut spans, list)
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -368,8 +368,7 @@ impl<D: Cell> Raster<'_, D> {
                     cells => cells,
                 },
             };
-            let cell_count = cells.as_ref().map_or(pixels.len(), |cells| cells.len());
-            list.begin((pixels.len(), 0), (cell_count, 0));
+            list.begin((pixels.len(), 0), cells.as_ref().map(|cells| (cells.len(), 0)));
             let mut target = Target { pixels, cells: cells.map(D::cells), kernel };
             spans.add_row(&row, list, &mut target);
             spans.draw_spans(list, &mut target);

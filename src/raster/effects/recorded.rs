@@ -15,6 +15,7 @@ use crate::raster::setup::{Basis, Corners8, FrameLayout, TriangleSetup8};
 use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
+use crate::span::depth::Cells;
 use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
 use crate::span::texture::PerspectiveSums;
 
@@ -80,14 +81,14 @@ impl Shades8 for Recorder<'_> {
     }
 
     #[inline(always)]
-    fn append<S: Lanes8, const DEPTHS: bool>(
+    fn append<S: Lanes8>(
         &mut self,
         s: S,
         list: &mut SpanList,
         spans: &Spans8<S, Marks8<S, { mapped::ANY }>>,
-        dz: DepthSteps<S>,
+        dz: Option<DepthSteps<S>>,
     ) {
-        self.spans.append::<S, DEPTHS>(s, list, spans, dz);
+        self.spans.append(s, list, spans, dz);
     }
 
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
@@ -127,9 +128,9 @@ compiled_for_each_level! {
 fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
     // All rows share the same pixels.
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0, depth_base: 0 };
-    let mut pixels = [0; 4_096];
-    let target = &mut Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
-    draw_triangles::<S, _, true, true>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
+    let (mut pixels, mut cells) = ([0; 4_096], [0_u32; 4_096]);
+    let target = &mut Target { pixels: &mut pixels, cells: Some(Cells::U32(&mut cells)), kernel: Kernel::PORTABLE };
+    draw_triangles::<S, _, true>(s, of, (layout, clip), target, recorder, &mut { SpanList::NONE }).spans
 }
 
 /// The spans of faces, none of them unbatched, in a frame of 4,096 × 4,096 pixels.

@@ -770,7 +770,7 @@ mod tests {
             of_face.walk(0, 0).rows(320, clip, |row| rows.push(row));
             let (mut pixels, mut list) = ([0; 320], SpanList::NONE);
             for row in rows.iter().step_by(7) {
-                list.begin((320, 0), (320, 0));
+                list.begin((320, 0), None);
                 let mut target = Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
                 of_face.add_row(row, &mut list, &mut target);
                 let spans = Spans::all(&of_face.listed, &list);
