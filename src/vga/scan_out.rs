@@ -33,6 +33,18 @@ impl Vga {
         }
     }
 
+    /// Writes the frame as 64,000 pixels of four bytes: red, green, blue, and 255 for alpha, as canvases and textures
+    /// take them.
+    ///
+    /// `out` may have any length, as in [`scan_out`](Self::scan_out). A last pixel of less than four bytes is left
+    /// alone.
+    pub fn scan_out_rgba(&self, out: &mut [u8]) {
+        for (rgba, &pixel) in out.as_chunks_mut::<4>().0.iter_mut().zip(self.pixels()) {
+            let color = self.dac.color_of(pixel);
+            *rgba = [color.r, color.g, color.b, u8::MAX];
+        }
+    }
+
     /// Writes a row as 320 pixels of 5 bits red, 6 green, 5 blue (red on top), for a display that is fed row by row
     /// from a small buffer.
     ///

@@ -543,6 +543,12 @@ fn scan_out_looks_every_byte_up_through_the_mask() {
             assert_eq!(color, r << 16 | g << 8 | b, "pixel {k}, mask {mask:X}");
             assert_eq!(color, u32::from(vga.palette()[vga.pixels()[k]]));
         }
+        let mut rgba = vec![0; 4 * Vga::SHOWN];
+        vga.scan_out_rgba(&mut rgba);
+        for (k, (rgba, color)) in rgba.chunks(4).zip(&rgb).enumerate() {
+            let [_, r, g, b] = color.to_be_bytes();
+            assert_eq!(rgba, [r, g, b, 255], "pixel {k}, mask {mask:X}");
+        }
         let mut row565 = [0; 320];
         for row in 0..200 {
             vga.scan_out_row_rgb565(row, &mut row565);
@@ -566,6 +572,15 @@ fn buffers_of_other_lengths_are_filled_as_far_as_they_go() {
         let filled = length.min(Vga::SHOWN);
         assert_eq!(out[..filled], whole[..filled]);
         assert!(out[filled..].iter().all(|&color| color == 0xDEAD_BEEF));
+    }
+    let mut whole = vec![0; 4 * Vga::SHOWN];
+    vga.scan_out_rgba(&mut whole);
+    for length in [0, 1, 3, 4, 1_279, 255_999, 256_001, 256_004] {
+        let mut out = vec![0xEF; length];
+        vga.scan_out_rgba(&mut out);
+        let filled = length.min(4 * Vga::SHOWN) / 4 * 4;
+        assert_eq!(out[..filled], whole[..filled]);
+        assert!(out[filled..].iter().all(|&byte| byte == 0xEF));
     }
     for row in [0, 199] {
         let mut whole = [0; 320];

@@ -10,14 +10,12 @@ use mode13h::vga::Vga;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut scene = Scene::showing(shapes::teapot(8));
-    let (mut vga, mut colors) = (Vga::new(), vec![0; Vga::SHOWN]);
+    let (mut vga, mut rgba) = (Vga::new(), vec![0; 4 * Vga::SHOWN]);
     for seconds in std::env::args().skip(1) {
         scene.set_time(seconds.parse()?);
         Renderer::new().draw(&scene, &mut vga)?;
-        vga.scan_out(&mut colors);
-        let bytes: Vec<u8> =
-            colors.iter().flat_map(|color| [(color >> 16) as u8, (color >> 8) as u8, *color as u8, 255]).collect();
-        std::io::stdout().write_all(&bytes)?;
+        vga.scan_out_rgba(&mut rgba);
+        std::io::stdout().write_all(&rgba)?;
     }
     Ok(())
 }

@@ -13,11 +13,7 @@ async fn main() {
     while !is_key_pressed(KeyCode::Escape) {
         scene.set_time(get_time());
         renderer.draw(&scene, &mut vga).expect("the scene has no fault");
-        let palette = vga.palette();
-        for (pixel, &index) in image.get_image_data_mut().iter_mut().zip(vga.pixels()) {
-            let color = palette[index];
-            *pixel = [color.r, color.g, color.b, 255];
-        }
+        vga.scan_out_rgba(&mut image.bytes);
         texture.update(&image);
         // The largest 4:3 rectangle that fits, as on a VGA's screen, whatever the window's shape.
         let height = screen_height().min(screen_width() * 0.75);
