@@ -416,6 +416,32 @@ fn wrong_depth_tests_are_caught() {
     assert_caught("a pixel behind the last", check_copy(full(), true, one_more));
 }
 
+/// Spans that do not lie inside the cells are not drawn, be the offsets of cells those of the pixels or not.
+#[test]
+fn spans_lie_inside_the_cells() {
+    const PIXELS: usize = 300;
+    for cells in [0, 1, 99, 100, 109, 110, 111, 299] {
+        for shift in [0, 5] {
+            let at = [0_u32, 40, 100, 109, 280];
+            let span = |at| listed::ListedSpan { at, length: 10, shade: 7 << 8, step: 0 };
+            let spans = at.map(|at| span(at + shift));
+            let depths = at.map(|at| listed::ListedDepths { z: 1 << 54, dz: 0, at });
+            let mut expected = vec![3; PIXELS];
+            for (_, span) in at.iter().zip(&spans).filter(|(at, _)| **at as usize + 10 <= cells) {
+                expected[span.at as usize..][..10].fill(7);
+            }
+            for kernel in Kernel::available() {
+                let mut bytes = vec![3; PIXELS];
+                listed::fill_where_nearer(kernel, &mut bytes, &mut vec![9_u32; cells], &spans, &depths);
+                assert_eq!(bytes, expected, "{kernel:?}, {cells} cells, {shift} pixels before them");
+                let mut bytes = vec![3; PIXELS];
+                listed::fill_where_nearer(kernel, &mut bytes, &mut vec![9_u16; cells], &spans, &depths);
+                assert_eq!(bytes, expected, "{kernel:?}, {cells} narrow cells, {shift} pixels before them");
+            }
+        }
+    }
+}
+
 #[test]
 fn wrong_lists_are_caught() {
     let kernel = Kernel::default();
