@@ -245,11 +245,21 @@ fn doubled<S: Lanes8>(s: S, u: S::F64, v: S::F64) -> S::F64 {
     s.add(s.add(u, v), s.max(u, v))
 }
 
-/// The least n for which a quotient, at least 0, is at most 2ⁿ, from its exponent; 0 for those up to 1.
+/// The least n, from 0 on, for which a length, at least 0, is at most 2ⁿ units. The bits of f64 from 0 on, as integers,
+/// are in the order of the numbers, and those of 2ⁿ units are n · 2⁵² more than those of one; so no division is needed.
 #[inline(always)]
-fn level_of<S: Lanes8>(s: S, quotient: S::F64) -> S::I32 {
-    let [_, upper] = s.halves_of_i64(s.add_i64(s.bits(quotient), s.splat_i64((1 << 52) - 1)));
-    s.max_i32(s.sub_i32(s.shr_i32(upper, 20), s.splat_i32(1_023)), s.splat_i32(0))
+fn level_of<S: Lanes8>(s: S, length: S::F64, unit: S::F64) -> S::I32 {
+    let more = s.sub_i64(s.bits(length), s.bits(unit));
+    let [_, upper] = s.halves_of_i64(s.add_i64(more, s.splat_i64((1 << 52) - 1)));
+    s.max_i32(s.shr_i32(upper, 20), s.splat_i32(0))
+}
+
+/// Twice the length of a step of triangle `lane`, times the square of the divisor, given two numerators with their
+/// divisor, and the changes of the planes.
+#[inline(always)]
+fn step_of<S: Lanes8>(s: S, lane: usize, [u, v, d]: [S::F64; 3], steps: &[Floats; 3]) -> S::F64 {
+    let (du, dv, dd) = (s.splat_f64(steps[0][lane]), s.splat_f64(steps[1][lane]), s.splat_f64(steps[2][lane]));
+    doubled(s, s.neg_mul_add(u, dd, s.mul(du, d)), s.neg_mul_add(v, dd, s.mul(dv, d)))
 }
 
 /// Bounds of twice the length of a step, given u, v and 1 of the corners, times their depths, and the changes of the
@@ -428,12 +438,12 @@ impl PerspectivePlanes8 {
         let [shortest_down, longest_down] = steps_of_corners(s, values, &self.row_step);
         let unit = s.mul(area, s.splat_f64(185_344.0));
         let off = 1.0 / 8_192.0;
-        let (low, high) = (s.mul(unit, s.mul(greatest, greatest)), s.mul(unit, s.mul(least, least)));
-        let low = s.div(s.mul(s.max(shortest_across, shortest_down), s.splat_f64(1.0 - off)), low);
-        let high = s.div(s.mul(s.max(longest_across, longest_down), s.splat_f64(1.0 + off)), high);
+        let shortest = s.mul(s.max(shortest_across, shortest_down), s.splat_f64(1.0 - off));
+        let longest = s.mul(s.max(longest_across, longest_down), s.splat_f64(1.0 + off));
         // At most 8.
         let last = s.splat_i32(last as i32);
-        let (low, high) = (s.min_i32(level_of(s, low), last), s.min_i32(level_of(s, high), last));
+        let low = s.min_i32(level_of(s, shortest, s.mul(unit, s.mul(greatest, greatest))), last);
+        let high = s.min_i32(level_of(s, longest, s.mul(unit, s.mul(least, least))), last);
         let is_single = s.and_not(s.is_equal(low, high), s.is_less(s.add(least, least), greatest));
         // Eight bits.
         let is_single = s.and(is_single, s.mask_from_bits((self.fits_levels & 0xFF) as u8));
@@ -446,7 +456,7 @@ impl PerspectivePlanes8 {
         u32::try_from(self.single_level[lane % LANES]).ok()
     }
 
-    /// The level of a texture at pixel `k` of a span of triangle `lane`, from the sums at its first, or `None` where an
+    /// The levels of a texture at pixels `k` of a span of triangle `lane`, from the sums at its first, or −1 where an
     /// estimate cannot decide.
     ///
     /// With N and D the sums, ∂u/∂x = (∂N/∂x · D − N · ∂D/∂x) / D². So the level is the least n at which twice the
@@ -464,24 +474,23 @@ impl PerspectivePlanes8 {
     /// For a triangle [alone](Self::set_up_alone), whose sums are those of exact weights, 3 · (5κ + 192κ²) · Q takes
     /// the place of 174·X·Q·κ: 64 steps are off by 64 times as much as one.
     #[inline(always)]
-    pub(super) fn level(&self, lane: usize, [u, v, d]: [f64; 3], k: f64, last: u32) -> Option<u32> {
+    pub(super) fn levels<S: Lanes8>(&self, s: S, lane: usize, sums: [f64; 3], k: S::I32, last: u32) -> S::I32 {
         let lane = lane % LANES;
-        let ([du, dv, dd], [eu, ev, ed]) = (&self.step, &self.row_step);
-        let (du, dv, dd, eu, ev, ed) = (du[lane], dv[lane], dd[lane], eu[lane], ev[lane], ed[lane]);
-        let magnitude = |x: f64| f64::from_bits(x.to_bits() & (u64::MAX >> 1));
-        let doubled = |u: f64, v: f64| {
-            let (u, v) = (magnitude(u), magnitude(v));
-            if u > v { 2.0 * u + v } else { 2.0 * v + u }
-        };
-        let across = doubled(du * d - u * dd, dv * d - v * dd);
-        let (u, v, d) = (u + k * du, v + k * dv, d + k * dd);
-        let down = doubled(eu * d - u * ed, ev * d - v * ed);
-        let quotient = if across > down { across } else { down } / (185_344.0 * d * d);
-        // The least n at which x is at most 2ⁿ, from its exponent.
-        let level = |x: f64| if x > 1.0 { ((x.to_bits() + ((1 << 52) - 1)) >> 52) as u32 - 1_023 } else { 0 };
-        let off = 1.0 / 65_536.0;
-        let (least, most) = (level(quotient * (1.0 - off)).min(last), level(quotient * (1.0 + off)).min(last));
-        (self.fits_levels >> lane & 1 != 0 && least == most).then_some(least)
+        if self.fits_levels >> lane & 1 == 0 {
+            return s.splat_i32(-1);
+        }
+        let (u, v, d) = (s.splat_f64(sums[0]), s.splat_f64(sums[1]), s.splat_f64(sums[2]));
+        let across = step_of(s, lane, [u, v, d], &self.step);
+        let (k, step) = (s.to_f64(k), &self.step);
+        let u = s.mul_add(k, s.splat_f64(step[0][lane]), u);
+        let v = s.mul_add(k, s.splat_f64(step[1][lane]), v);
+        let d = s.mul_add(k, s.splat_f64(step[2][lane]), d);
+        let down = step_of(s, lane, [u, v, d], &self.row_step);
+        let (length, unit) = (s.max(across, down), s.mul(s.mul(s.splat_f64(185_344.0), d), d));
+        let (off, last) = (1.0 / 65_536.0, s.splat_i32(last as i32)); // at most 8
+        let least = s.min_i32(level_of(s, s.mul(length, s.splat_f64(1.0 - off)), unit), last);
+        let most = s.min_i32(level_of(s, s.mul(length, s.splat_f64(1.0 + off)), unit), last);
+        s.select_i32(s.is_equal(least, most), least, s.splat_i32(-1))
     }
 
     /// Sets up a single triangle, number 0, with these coordinates, u and v, at its corners. Its base is 0.

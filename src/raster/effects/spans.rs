@@ -11,6 +11,8 @@ use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::shade::RESEED;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
+#[cfg(test)]
+use crate::simd::Portable;
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
@@ -239,12 +241,19 @@ impl<'a> Spans<'a> {
         planes.perspective.single_level(lane)
     }
 
-    /// The level of the image at pixel `k` of span `i`, whose texture is linear on the face, if an
-    /// estimate decides it.
+    /// The levels of the image at pixels `k` of span `i`, whose texture is linear on the face, or −1 where an estimate
+    /// cannot decide.
     #[inline(always)]
-    pub(super) fn level(&self, i: usize, k: i32, last: u32) -> Option<u32> {
+    pub(super) fn levels<S: Lanes8>(&self, s: S, i: usize, k: S::I32, last: u32) -> S::I32 {
         let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
-        planes.perspective.level(lane, self.data.sums(self.first + i), f64::from(k), last)
+        planes.perspective.levels(s, lane, self.data.sums(self.first + i), k, last)
+    }
+
+    /// The level at pixel `k` of span `i`, if an estimate decides it.
+    #[cfg(test)]
+    pub(super) fn level(&self, i: usize, k: i32, last: u32) -> Option<u32> {
+        let [level, ..] = self.levels(Portable, i, [k; LANES], last);
+        u32::try_from(level).ok()
     }
 
     /// The row's last pixel inside the frame, from the first one of span `i`.

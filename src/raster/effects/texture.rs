@@ -9,7 +9,7 @@ use super::listing::FaceCorners;
 use super::pipeline::{Image, LEVELS, TextureStage};
 use super::spans::Spans;
 use crate::fixed::{HAS_F64, IS_COMPACT};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, NUMBERS};
 use crate::mapping::Mapping;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
@@ -305,13 +305,18 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     // At most 64, all of them.
     let skipped = pixels.skipped as usize;
     let (mut first, end, last) = (skipped, skipped + pixels.length, spans.last(i));
-    let level_of_16 = |begin: usize| {
-        let k = middle(begin as i32, last);
-        let estimated = if HAS_F64 { spans.level(i, k, last_level) } else { None };
-        match estimated {
-            Some(level) => level,
-            None => exact_level(spans, i, k, last_level),
-        }
+    let mut levels = [-1; LANES];
+    if HAS_F64 && single.is_none() {
+        // Of the pixel in the middle of each 16.
+        let begin = s.shl_i32(s.load_i32(&NUMBERS), 4);
+        let k = s.min_i32(s.add_i32(begin, s.splat_i32(self::EVERY / 2)), s.splat_i32(last));
+        s.store_i32(spans.levels(s, i, s.max_i32(k, begin), last_level), &mut levels);
+    }
+    // A span has at most 64 pixels.
+    let [a, b, c, d, ..] = levels;
+    let level_of_16 = |begin: usize| match u32::try_from([a, b, c, d][begin / EVERY % 4]) {
+        Ok(level) => level,
+        Err(_) => exact_level(spans, i, middle(begin as i32, last), last_level),
     };
     // Where the next level is chosen.
     let mut next = if single.is_some() { end } else { first / EVERY * EVERY };
