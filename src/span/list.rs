@@ -22,6 +22,12 @@ const CAPACITY: usize = 128;
 type Numbers = [u32; CAPACITY + LANES];
 type Depths = [i64; CAPACITY + LANES];
 
+/// Eight sums in one cache line: each vector of rows is added to what the one before has just stored, and across two
+/// lines that takes several times as long.
+#[derive(Clone, Debug)]
+#[repr(align(32))]
+struct Sums([i32; LANES]);
+
 /// Spans, in arrays. Each lies inside the pixels and, with depths, the cells.
 ///
 /// # Safety invariant
@@ -53,7 +59,7 @@ pub(crate) struct SpanList {
     /// True if that is the same for both, so that pixels and their cells have the same offset.
     cells_are_pixels: bool,
     /// Pixels of all spans so far, as eight partial sums.
-    covered: [i32; LANES],
+    covered: Sums,
     /// Spans that have been drawn.
     drawn: u32,
     /// Pixels that were nearer.
@@ -145,7 +151,7 @@ impl SpanList {
             width: 0,
             has_cells: false,
             cells_are_pixels: true,
-            covered: [0; LANES],
+            covered: Sums([0; LANES]),
             drawn: 0,
             nearer: 0,
         }
@@ -173,12 +179,12 @@ impl SpanList {
             // Spans that lie inside the pixels lie inside the cells.
             self.pixels = self.pixels.min(self.cells);
         }
-        (self.count, self.covered, self.drawn, self.nearer) = (0, [0; LANES], 0, 0);
+        (self.count, self.covered, self.drawn, self.nearer) = (0, Sums([0; LANES]), 0, 0);
     }
 
     /// Counts of everything drawn: spans, the pixels that they cover, and those that were nearer.
     pub(crate) fn counts(&self) -> (u32, u32, u32) {
-        (self.drawn, self.covered.iter().sum::<i32>().cast_unsigned(), self.nearer)
+        (self.drawn, self.covered.0.iter().sum::<i32>().cast_unsigned(), self.nearer)
     }
 
     /// Returns whether there is room for this many more.
@@ -228,7 +234,7 @@ impl SpanList {
         let &Spans8 { at, cell, length, paint, z, .. } = spans;
         let mask = self.inside(s, spans, dz.is_some());
         let covered = s.select_i32(mask, length, s.splat_i32(0));
-        s.store_i32(s.add_i32(s.load_i32(&self.covered), covered), &mut self.covered);
+        s.store_i32(s.add_i32(s.load_i32(&self.covered.0), covered), &mut self.covered.0);
         let count = self.count.min(CAPACITY);
         s.compress_i32(
             mask,
@@ -300,7 +306,7 @@ impl SpanList {
         // Below 2³¹.
         (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, cell as u32, length as u32, paint);
         (self.z[k], self.dz[k]) = (z, dz);
-        self.covered[0] = self.covered[0].wrapping_add(length as i32);
+        self.covered.0[0] = self.covered.0[0].wrapping_add(length as i32);
         self.count += 1;
         Some(k)
     }
