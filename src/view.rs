@@ -319,6 +319,9 @@ impl ObjectView {
     }
 
     /// The bounds, in depth and on the screen, of a box in object space.
+    ///
+    /// Never inlined, so that `.ci/off_is_free` compares builds that compile it equally.
+    #[inline(never)]
     pub(crate) fn reach(&self, bounds: Bounds) -> ScreenBounds {
         let (matrix, offset) = &self.exact;
         let (min, max) = (widen(bounds.min), widen(bounds.max));
