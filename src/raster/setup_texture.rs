@@ -542,3 +542,22 @@ impl PerspectivePlanes8 {
         })
     }
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::*;
+    use crate::simd::Portable;
+
+    /// A length of exactly 2ⁿ units has level n, and the next greater f64 the level after it.
+    #[test]
+    fn a_level_ends_at_its_power_of_two() {
+        let level = |length: f64, unit: f64| level_of(Portable, [length; LANES], [unit; LANES])[0];
+        for unit in [1.0, 1.5, 185_344.0, 3e20, 1.0_f64.next_down(), 2.0_f64.next_down()] {
+            assert_eq!((level(0.0, unit), level(unit / 1_024.0, unit)), (0, 0));
+            for n in 0..12 {
+                let most = unit * f64::from(1 << n);
+                assert_eq!([most.next_down(), most, most.next_up()].map(|l| level(l, unit)), [n, n, n + 1], "{unit}");
+            }
+        }
+    }
+}

@@ -46,18 +46,18 @@ pub(crate) struct SpanList {
     z: Depths,
     dz: Depths,
     count: usize,
-    /// Number of pixels and cells inside which spans lie. If both have the same offset, that of pixels is no more than
-    /// that of cells.
+    /// Numbers of pixels and cells. If a pixel and its cell have the same offset, there are no more pixels than cells:
+    /// what lies inside the pixels lies inside both.
     pixels: i32,
     cells: i32,
     /// Pixels from one row to the next.
     pub(crate) pitch: i32,
     /// Cells from one row to the next.
     pub(crate) width: i32,
-    /// True if there are cells.
-    has_cells: bool,
     /// True if that is the same for both, so that pixels and their cells have the same offset.
     cells_are_pixels: bool,
+    /// True if there are cells.
+    has_cells: bool,
     /// Pixels of all spans so far, as eight partial sums.
     covered: Sums,
     /// Spans that have been drawn.
@@ -149,8 +149,8 @@ impl SpanList {
             cells: 0,
             pitch: 0,
             width: 0,
-            has_cells: false,
             cells_are_pixels: true,
+            has_cells: false,
             covered: Sums([0; LANES]),
             drawn: 0,
             nearer: 0,
@@ -176,7 +176,6 @@ impl SpanList {
         self.has_cells = cells.is_some();
         self.cells_are_pixels = pitch == width;
         if self.cells_are_pixels {
-            // Spans that lie inside the pixels lie inside the cells.
             self.pixels = self.pixels.min(self.cells);
         }
         (self.count, self.covered, self.drawn, self.nearer) = (0, Sums([0; LANES]), 0, 0);
@@ -338,7 +337,7 @@ impl SpanList {
         Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
     }
 
-    /// The shade of span `k`, with the step in the upper half.
+    /// The shade of span `k`, with the step in the upper half, to be broadcast from memory.
     #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(crate) fn paint(&self, k: usize) -> &u32 {

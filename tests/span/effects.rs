@@ -416,7 +416,7 @@ fn wrong_depth_tests_are_caught() {
     assert_caught("a pixel behind the last", check_copy(full(), true, one_more));
 }
 
-/// Spans that do not lie inside the cells are not drawn, be the offsets of cells those of the pixels or not.
+/// Spans that do not lie inside the cells are not drawn, whether or not pixels and cells share their offsets.
 #[test]
 fn spans_lie_inside_the_cells() {
     const PIXELS: usize = 300;

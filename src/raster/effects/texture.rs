@@ -307,7 +307,7 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     let (mut first, end, last) = (skipped, skipped + pixels.length, spans.last(i));
     let mut levels = [-1; LANES];
     if HAS_F64 && single.is_none() {
-        // Of the pixel in the middle of each 16.
+        // That of 16 pixels is the level of the one in their middle: see `middle`.
         let begin = s.shl_i32(s.load_i32(&NUMBERS), 4);
         let k = s.min_i32(s.add_i32(begin, s.splat_i32(self::EVERY / 2)), s.splat_i32(last));
         s.store_i32(spans.levels(s, i, s.max_i32(k, begin), last_level), &mut levels);
