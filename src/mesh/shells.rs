@@ -59,10 +59,12 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
         let [a_size, b_size] = [a, b].map(|shell| volumes[shell as usize].abs());
         b_size.total_cmp(&a_size).then(a.cmp(&b))
     };
-    let mut order: Vec<usize> = (0..suspects.len()).collect();
-    order.sort_unstable_by(|&a, &b| compare(suspects[a], suspects[b]));
+    // In the order of `compare`: positive numbers have the order of their bits.
+    let size_bits = |&shell: &u32| volumes[shell as usize].abs().to_bits();
+    let mut order: Vec<(u64, usize)> = suspects.iter().map(|shell| !size_bits(shell)).zip(0..).collect();
+    order.sort_unstable();
     let mut turned = vec![false; count];
-    for suspect in order {
+    for (_, suspect) in order {
         let shell = suspects[suspect];
         let winds = enclosing[suspect].iter().filter(|(other, _)| compare(*other, shell).is_lt());
         let winding: i32 = winds.map(|&(other, step)| if turned[other as usize] { -step } else { step }).sum();
@@ -86,13 +88,15 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     if has_others {
         // The parts that do not balance where they meet others. Joined together, they do.
         let mut joins = Vec::new();
-        let mut here: Vec<(u32, i32)> = Vec::new();
+        // For each face its set, with a last bit that is set if it runs down the edge.
+        let mut here: Vec<u32> = Vec::new();
         for faces in edges.faces_by_edge().filter(|faces| faces.clone().count() > 2) {
             here.clear();
-            here.extend(faces.map(|(down, corner)| (sets.of(corner as u32 / 3), if down { -1 } else { 1 })));
+            here.extend(faces.map(|(down, corner)| sets.of(corner as u32 / 3) << 1 | u32::from(down)));
             here.sort_unstable();
-            let sum = |part: &[(u32, i32)]| part.iter().map(|(_, step)| step).sum::<i32>();
-            let mut unbalanced = here.chunk_by(|a, b| a.0 == b.0).filter(|part| sum(part) != 0).map(|part| part[0].0);
+            let sum = |part: &[u32]| part.iter().map(|face| if face & 1 == 0 { 1 } else { -1 }).sum::<i32>();
+            let parts = here.chunk_by(|a, b| a >> 1 == b >> 1);
+            let mut unbalanced = parts.filter(|part| sum(part) != 0).map(|part| part[0] >> 1);
             if let Some(first) = unbalanced.next() {
                 joins.extend(unbalanced.map(|other| (first, other)));
             }

@@ -81,8 +81,9 @@ impl fmt::Debug for InverseColormap {
 /// entries, at the price of noise everywhere. The mean instead of the median would give the cube
 /// 41, since its greys are close together.
 fn spread(palette: &Palette) -> u8 {
-    let mut colors = *palette.on_dac().colors();
+    let mut colors = palette.on_dac().colors().map(Rgb::to_u32);
     colors.sort_unstable();
+    let colors = colors.map(Rgb::from_u32);
     let mut distances = [u32::MAX; 256];
     let mut count = 0;
     for (i, &color) in colors.iter().enumerate() {

@@ -168,11 +168,13 @@ impl Pace {
 
     /// The sum of the block's times, with frames delayed by another program counted as the median.
     fn sum(&self) -> f32 {
-        let mut times = self.times;
+        // Positive numbers have the order of their bits.
+        let mut times = self.times.map(f32::to_bits);
         let times = &mut times[..self.drawn];
-        times.sort_unstable_by(f32::total_cmp);
-        let median = times[(self.drawn - 1) / 2];
-        times.iter().map(|time| if *time < OUTLIER * median { *time } else { median }).sum()
+        times.sort_unstable();
+        let median = f32::from_bits(times[(self.drawn - 1) / 2]);
+        let times = times.iter().map(|time| f32::from_bits(*time));
+        times.map(|time| if time < OUTLIER * median { time } else { median }).sum()
     }
 
     fn end_block(&mut self) {

@@ -42,13 +42,14 @@ impl Mipmap {
         let (mut colors, histogram) = (*texture.colors(), texture.histogram());
         let (mut entries, free): (Vec<u8>, Vec<u8>) = (0..=255).partition(|&entry| histogram[usize::from(entry)] > 0);
         let mut shown: Vec<Rgb> = entries.iter().map(|&entry| colors[usize::from(entry)]).collect();
-        let mut own = shown.clone();
+        let mut own: Vec<u32> = shown.iter().map(|color| color.to_u32()).collect();
         own.sort_unstable();
-        let is_missing = |(mean, _): &(Rgb, u32)| own.binary_search(mean).is_err();
-        let mut missing: Vec<(Rgb, u32)> = means.iter().copied().filter(is_missing).collect();
+        let missing = means.iter().map(|(mean, area)| (mean.to_u32(), *area));
+        let mut missing: Vec<(u32, u32)> = missing.filter(|(mean, _)| own.binary_search(mean).is_err()).collect();
         missing.sort_unstable();
         let missing = missing.chunk_by(|(a, _), (b, _)| a == b);
-        let missing = missing.map(|same| (same[0].0, same.iter().map(|(_, area)| area).sum())).collect();
+        let sum = |same: &[(u32, u32)]| same.iter().map(|(_, area)| area).sum();
+        let missing = missing.map(|same| (Rgb::from_u32(same[0].0), sum(same))).collect();
         if !free.is_empty() {
             let mut cut = MedianCut::new(missing);
             cut.cut_to(free.len());

@@ -255,14 +255,17 @@ impl fmt::Debug for Texture {
 /// Reduces the pixels to at most `most` colours, darkest first. Returns the index of the nearest colour for each pixel,
 /// and the colours.
 fn reduced(pixels: &[Rgb], most: u16) -> (Vec<u8>, [Rgb; 256]) {
-    let mut sorted = pixels.to_vec();
+    let mut sorted: Vec<u32> = pixels.iter().map(|pixel| pixel.to_u32()).collect();
     sorted.sort_unstable();
     // At most 65,536 pixels.
-    let counted = sorted.chunk_by(|a, b| a == b).map(|same| (same[0], same.len() as u32)).collect();
+    let counted = sorted.chunk_by(|a, b| a == b).map(|same| (Rgb::from_u32(same[0]), same.len() as u32)).collect();
     let mut cut = MedianCut::new(counted);
     cut.cut_to(usize::from(most));
-    let mut means: Vec<Rgb> = cut.means().collect();
-    means.sort_unstable_by_key(|color| (color.brightness(), *color));
+    let key = |color: Rgb| u64::from(color.brightness()) << 32 | u64::from(color.to_u32());
+    let mut keys: Vec<u64> = cut.means().map(key).collect();
+    keys.sort_unstable();
+    // The lower half.
+    let means: Vec<Rgb> = keys.into_iter().map(|key| Rgb::from_u32(key as u32)).collect();
     let search = NearestColors::new(&means);
     let texels = pixels.iter().map(|&pixel| search.nearest(pixel)).collect();
     let mut colors = [Rgb::BLACK; 256];
