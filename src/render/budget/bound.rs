@@ -30,8 +30,9 @@ pub(super) struct Shapes {
     pub(super) spread: Lanes<f32>,
     /// Radius of the corners' positions.
     pub(super) edge: Lanes<f32>,
-    /// Size of the parts into which the faces are divided, as a fraction of the face.
-    pub(super) part: Lanes<f32>,
+    /// Size of the parts into which the faces are divided, as a fraction of the face; `None` for whole faces, whose
+    /// corners have unit normals.
+    pub(super) part: Option<Lanes<f32>>,
     /// Fraction of its range by which perspective shifts a shade.
     pub(super) bend: Lanes<f32>,
 }
@@ -196,7 +197,7 @@ struct Normals {
 /// A light's diffuse term by Lemmas 2, 3 and 7, from the range of n·w at the corners, where w is
 /// the direction times the fall-off.
 #[inline(always)]
-fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff, below: bool) -> Term {
+fn body(n: Normals, (most, least): (f32, f32), fall: FallOff, whole: bool, below: bool) -> Term {
     let Normals { spread, deficit, part } = n;
     let turned = spread * (1.0 + deficit);
     let w1 = fall.first + fall.most * fall.turn;
@@ -206,7 +207,7 @@ fn body<const WHOLE: bool>(n: Normals, (most, least): (f32, f32), fall: FallOff,
     let highest = lesser(above * (1.0 + deficit), fall.most);
     let lowest = if below { -lesser(under * (1.0 + deficit), fall.most) } else { greater(least - curved, 0.0) };
     let differs = lesser(2.0 * part * (turned * fall.most + w1), highest - lowest);
-    let error = if WHOLE {
+    let error = if whole {
         let (lit, dark) = (greater(most, 0.0), greater(-least, 0.0));
         let kink = lesser(lit * dark / (lit + dark), 0.5 * (spread * fall.most + w1));
         let kink = if lit * dark > 0.0 { kink } else { 0.0 };
@@ -296,6 +297,7 @@ struct Sums {
     of: [Terms; 3],
     channels: usize,
     normals: [Normals; LANES],
+    whole: bool,
     below: bool,
 }
 
@@ -321,7 +323,7 @@ impl Sums {
 
     /// Adds the terms of one light. `weighted` is the range of n·l times its fall-off, if it has one.
     #[inline(always)]
-    fn add_light<const WHOLE: bool, P: Patches>(
+    fn add_light<P: Patches>(
         &mut self,
         patches: &P,
         directions: &P::Directions,
@@ -329,13 +331,13 @@ impl Sums {
         eye: Option<&Eye<P::Directions>>,
         strength: &Strength,
     ) {
-        let (normals, below) = (self.normals, self.below);
+        let (normals, whole, below) = (self.normals, self.whole, self.below);
         let facing = patches.facing(directions);
         let [most, least] = weighted.unwrap_or(facing);
         // Loops, because closures would not be inlined eight times.
         let mut bodies = [[0.0; LANES]; 4];
         for lane in 0..LANES {
-            put(&mut bodies, lane, body::<WHOLE>(normals[lane], (most[lane], least[lane]), falls[lane], below));
+            put(&mut bodies, lane, body(normals[lane], (most[lane], least[lane]), falls[lane], whole, below));
         }
         self.add(&strength.body, &bodies);
         let Some(Eye { lobe, sight, turn }) = eye else { return };
@@ -394,23 +396,18 @@ impl Incident<'_> {
 compiled_for_each_level! {
     /// Calls [`interpolation_error`] compiled for the kernel's processor; the results are the same.
     #[inline(never)]
-    pub(super) fn error_at_best[const WHOLE: bool, P: Patches][WHOLE, P](
+    pub(super) fn error_at_best[P: Patches][P](
         kernel: Kernel, patches: &P, shapes: &Shapes, incident: &Incident<'_>,
     ) -> Bounds {
-        interpolation_error::<WHOLE, P>(patches, shapes, incident)
+        interpolation_error(patches, shapes, incident)
     }
 }
 
-/// Bounds how far linear shades are from the model's light, not counting rounding to bytes, on each
-/// of eight patches. With `WHOLE` the bound is for whole faces, whose corners have unit normals;
-/// otherwise it is for any part of the faces of the size given by `shapes`, interpolated between
-/// light at the part's own corners.
+/// Bounds how far linear shades are from the model's light, not counting rounding to bytes, on each of eight patches.
+/// If `shapes` gives the size of parts, the bound is for any part of that size, interpolated between light at the
+/// part's own corners.
 #[inline(always)]
-pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
-    patches: &P,
-    shapes: &Shapes,
-    incident: &Incident<'_>,
-) -> Bounds {
+pub(super) fn interpolation_error<P: Patches>(patches: &P, shapes: &Shapes, incident: &Incident<'_>) -> Bounds {
     let Lights { suns, lamps, eye } = incident.lights;
     let narrow = |[x, y, z]: [f64; 3]| [x as f32, y as f32, z as f32];
     // Coordinates in f32 are off by up to 2⁻²⁴ of their magnitude, and their differences by no more than this.
@@ -419,12 +416,13 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     if !incident.is_moderate() {
         return Bounds { on_screen: [HUGE; LANES], on_face: [HUGE; LANES] };
     }
+    let (part, whole) = (shapes.part.unwrap_or([1.0; LANES]), shapes.part.is_none());
     let mut normals = [Normals { spread: 0.0, deficit: 0.0, part: 0.0 }; LANES];
     for (lane, normals) in normals.iter_mut().enumerate() {
         let spread = shapes.spread[lane];
         let length = square_root(greater(1.0 - spread * spread, 1e-6));
         let deficit = if spread < CANCELS { (1.0 - length) / length } else { HUGE };
-        *normals = Normals { spread, deficit, part: shapes.part[lane] };
+        *normals = Normals { spread, deficit, part: part[lane] };
     }
     let ambient = incident.reflectance.ambient as f32;
     let mut of = [[[0.0; LANES]; 4]; 3];
@@ -432,7 +430,7 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
         let ambient = if incident.in_color { ambient * incident.reflectance.color[channel] as f32 } else { ambient };
         (of[2], of[3]) = ([ambient; LANES], [ambient; LANES]);
     }
-    let mut sums = Sums { of, channels: incident.channels(), normals, below: incident.below };
+    let mut sums = Sums { of, channels: incident.channels(), normals, whole, below: incident.below };
     let eye = if incident.reflectance.specular != 0.0 {
         let sight = patches.point(narrow(eye), blur(eye), &shapes.edge);
         let turn = each!(lane => lesser(shapes.edge[lane] / sight.near[lane], GREATEST_TURN));
@@ -440,33 +438,34 @@ pub(super) fn interpolation_error<const WHOLE: bool, P: Patches>(
     } else {
         None
     };
-    for sun in suns {
-        let directions = patches.sun(sun.towards.to_array());
-        let strength = incident.strength(sun.intensity, sun.channels);
-        let falls = (None, &[FallOff::NONE; LANES]);
-        sums.add_light::<WHOLE, P>(patches, &directions, falls, eye.as_ref(), &strength);
-    }
-    for lamp in lamps {
-        let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
-        let sight = patches.point(narrow(lamp.position), blur(lamp.position), &shapes.edge);
+    // One loop for suns and lamps, because whatever it calls takes long to compile.
+    for light in 0..suns.len() + lamps.len() {
         let mut falls = [FallOff::NONE; LANES];
-        for (lane, fall) in falls.iter_mut().enumerate() {
-            *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
-        }
-        let ends = [each!(lane => falls[lane].most), each!(lane => falls[lane].least)];
-        let mut weighted = patches.weighted(&sight, &ends, inverse_range);
-        if let Some(cone) = &lamp.cone {
-            let [most, least] = patches.along(&sight.directions, narrow(cone.back));
-            for lane in 0..LANES {
-                let share = FallOff::of_cone(cone, (most[lane], least[lane]), falls[lane].turn);
-                falls[lane] = falls[lane].times(share);
-                let [above, below] = &mut weighted;
-                above[lane] *= if above[lane] > 0.0 { share.most } else { share.least };
-                below[lane] *= if below[lane] > 0.0 { share.least } else { share.most };
+        let (directions, weighted, strength) = if let Some(sun) = suns.get(light) {
+            (patches.sun(sun.towards.to_array()), None, incident.strength(sun.intensity, sun.channels))
+        } else if let Some(lamp) = lamps.get(light - suns.len()) {
+            let inverse_range = libm::sqrt(lamp.inverse_square) as f32;
+            let sight = patches.point(narrow(lamp.position), blur(lamp.position), &shapes.edge);
+            for (lane, fall) in falls.iter_mut().enumerate() {
+                *fall = FallOff::new(sight.near[lane], sight.far[lane], shapes.edge[lane], inverse_range);
             }
-        }
-        let strength = incident.strength(lamp.intensity, lamp.channels);
-        sums.add_light::<WHOLE, P>(patches, &sight.directions, (Some(weighted), &falls), eye.as_ref(), &strength);
+            let ends = [each!(lane => falls[lane].most), each!(lane => falls[lane].least)];
+            let mut weighted = patches.weighted(&sight, &ends, inverse_range);
+            if let Some(cone) = &lamp.cone {
+                let [most, least] = patches.along(&sight.directions, narrow(cone.back));
+                for lane in 0..LANES {
+                    let share = FallOff::of_cone(cone, (most[lane], least[lane]), falls[lane].turn);
+                    falls[lane] = falls[lane].times(share);
+                    let [above, below] = &mut weighted;
+                    above[lane] *= if above[lane] > 0.0 { share.most } else { share.least };
+                    below[lane] *= if below[lane] > 0.0 { share.least } else { share.most };
+                }
+            }
+            (sight.directions, Some(weighted), incident.strength(lamp.intensity, lamp.channels))
+        } else {
+            break;
+        };
+        sums.add_light(patches, &directions, (weighted, &falls), eye.as_ref(), &strength);
     }
     let mut bounds = Bounds { on_screen: [0.0; LANES], on_face: [0.0; LANES] };
     for [errors, ranges, most, least] in &sums.of[..sums.channels.min(3)] {

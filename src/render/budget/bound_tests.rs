@@ -288,18 +288,18 @@ impl Case {
     /// Bounds of the faces, of their parts, and of the cluster that contains them.
     fn bounds(&self) -> (Bounds, Bounds, Bounds) {
         let clusters = self.clusters();
-        let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: [1.0; LANES], bend: ZERO };
+        let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: None, bend: ZERO };
         for (lane, facet) in clusters.facets.iter().enumerate() {
             (shapes.spread[lane], shapes.edge[lane]) = (facet.spread, facet.edge);
         }
         let (faces, incident) = (self.faces(), self.incident(clusters.extent));
-        let parts = Shapes { part: [self.part; LANES], ..shapes };
+        let parts = Shapes { part: Some([self.part; LANES]), ..shapes };
         let chunk = &clusters.chunks[0];
-        let of_chunk = Shapes { spread: chunk.spread, edge: chunk.edge, part: [1.0; LANES], bend: ZERO };
+        let of_chunk = Shapes { spread: chunk.spread, edge: chunk.edge, part: None, bend: ZERO };
         (
-            interpolation_error::<true, _>(&faces, &shapes, &incident),
-            interpolation_error::<false, _>(&faces, &parts, &incident),
-            interpolation_error::<true, _>(&chunk.clusters, &of_chunk, &incident),
+            interpolation_error(&faces, &shapes, &incident),
+            interpolation_error(&faces, &parts, &incident),
+            interpolation_error(&chunk.clusters, &of_chunk, &incident),
         )
     }
 
@@ -437,16 +437,17 @@ fn bounds_do_not_depend_on_the_kernel() {
         let shapes = Shapes {
             spread: [clusters.facets[0].spread; LANES],
             edge: [clusters.facets[0].edge; LANES],
-            part: [0.25; LANES],
+            part: None,
             bend: [0.1; LANES],
         };
+        let parts = Shapes { part: Some([0.25; LANES]), ..shapes };
         let (faces, incident) = (case.faces(), case.incident(clusters.extent));
         let bits = |bounds: Bounds| (bounds.on_screen.map(f32::to_bits), bounds.on_face.map(f32::to_bits));
         let all = |kernel: Kernel| {
             [false, true].map(|in_color| {
                 let incident = Incident { in_color, ..incident };
-                let of_faces = error_at_best::<false, _>(kernel, &faces, &shapes, &incident);
-                let of_nodes = error_at_best::<true, _>(kernel, &clusters.chunks[0].clusters, &shapes, &incident);
+                let of_faces = error_at_best(kernel, &faces, &parts, &incident);
+                let of_nodes = error_at_best(kernel, &clusters.chunks[0].clusters, &shapes, &incident);
                 (bits(of_faces), bits(of_nodes))
             })
         };

@@ -51,7 +51,7 @@ fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
 
 impl Faces<'_> {
     /// Bounds the error on eight patches of a surface.
-    fn bounds<const WHOLE: bool, P: Patches>(
+    fn bounds<P: Patches>(
         &self,
         budget: &Budget,
         (patches, shapes): (&P, &Shapes),
@@ -61,7 +61,7 @@ impl Faces<'_> {
         let reflectance = &self.materials[usize::from(surface)].reflectance;
         let (extent, in_color) = (budget.clusters.extent, self.stages.has_channels());
         let incident = Incident { lights: self.lights, reflectance, extent, in_color, below };
-        error_at_best::<WHOLE, P>(self.kernel, patches, shapes, &incident)
+        error_at_best(self.kernel, patches, shapes, &incident)
     }
 
     /// Faces of a chunk whose clusters are linear, among those that show their fronts or, with
@@ -74,7 +74,7 @@ impl Faces<'_> {
             clusters.axes.iter_mut().flatten().for_each(|axis| *axis = -*axis);
         }
         let bend = bend_of_clusters(self.view, &clusters, &chunk.edge);
-        let shapes = Shapes { spread: chunk.spread, edge: chunk.edge, part: [1.0; LANES], bend };
+        let shapes = Shapes { spread: chunk.spread, edge: chunk.edge, part: None, bend };
         let spare = budget.spare(LINEAR_ROUNDING);
         let mut linear = 0;
         for (first, of) in chunk.surfaces.iter().enumerate() {
@@ -82,7 +82,7 @@ impl Faces<'_> {
             if chunk.surfaces[..first].contains(of) {
                 continue;
             }
-            let bounds = self.bounds::<true, _>(budget, (&clusters, &shapes), surface, false);
+            let bounds = self.bounds(budget, (&clusters, &shapes), surface, false);
             for lane in first..LANES {
                 if chunk.surfaces[lane] == *of && bounds.on_screen[lane] <= spare {
                     linear |= 0xFF << (LANES * lane);
@@ -130,7 +130,7 @@ impl Faces<'_> {
             }
             let places = &places[..count];
             let (faces, shapes) = self.eight(budget, first, places.iter().map(|&at| (at, back >> at & 1 == 1)));
-            let bounds = self.bounds::<true, _>(budget, (&faces, &shapes), surface, false);
+            let bounds = self.bounds(budget, (&faces, &shapes), surface, false);
             for (lane, &at) in places.iter().enumerate() {
                 let (on_screen, on_face) = (bounds.on_screen[lane], bounds.on_face[lane]);
                 let is_linear = on_screen <= linear;
@@ -150,7 +150,7 @@ impl Faces<'_> {
         places: impl Iterator<Item = (usize, bool)>,
     ) -> (EightFaces, Shapes) {
         let mut faces = EightFaces { normals: [[ZERO; 3]; 3], positions: [[ZERO; 3]; 3] };
-        let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: [1.0; LANES], bend: ZERO };
+        let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: None, bend: ZERO };
         for (lane, (at, back)) in places.enumerate() {
             let side = if back { -1.0 } else { 1.0 };
             let facet = &budget.clusters.facets[first + at];
@@ -179,13 +179,13 @@ impl Faces<'_> {
     ) -> Bounds {
         let eight = core::iter::repeat_n((0, face.back_facing), LANES);
         let (faces, shapes) = self.eight(budget, face.index as usize, eight);
-        self.bounds::<false, _>(budget, (&faces, &Shapes { part, bend, ..shapes }), face.surface, below)
+        self.bounds(budget, (&faces, &Shapes { part: Some(part), bend, ..shapes }), face.surface, below)
     }
 
     /// The shading of a clipped face, which has no position on the screen.
     pub(in crate::render) fn decide_clipped(&self, budget: &Budget, face: Face) -> FaceShading {
         let (faces, shapes) = self.eight(budget, face.index as usize, core::iter::once((0, face.back_facing)));
-        let bounds = self.bounds::<true, _>(budget, (&faces, &shapes), face.surface, false);
+        let bounds = self.bounds(budget, (&faces, &shapes), face.surface, false);
         if bounds.on_face[0] <= budget.spare(EXACT_ROUNDING) || !self.stages.lights_pixels() { FLOAT } else { PHONG }
     }
 
@@ -200,7 +200,7 @@ impl Faces<'_> {
             for &back in sides {
                 let eight = (0..surfaces.len()).map(|face| (face, back));
                 let (faces, shapes) = self.eight(&budget, first, eight);
-                let bounds = self.bounds::<true, _>(&budget, (&faces, &shapes), surfaces[0], false);
+                let bounds = self.bounds(&budget, (&faces, &shapes), surfaces[0], false);
                 let errors = bounds.on_screen.iter().take(surfaces.len());
                 most = errors.fold(most, |most, error| if *error <= most { most } else { *error });
             }
