@@ -199,6 +199,9 @@ impl Avx512 {
 /// `fn name[parameters][their names](arguments) -> result = generic;` defines a function whose first argument is the
 /// level.
 ///
+/// `… = generic, up to AVX2;` has no copy for AVX-512, where it would hardly be faster: such processors run the one for
+/// AVX2.
+///
 /// `fn name[parameters][their names](kernel: Kernel, arguments) -> result { body }` is compiled only for AVX2 and for
 /// the target's baseline. Functions that the body calls must be inlined. (It takes a body rather than a closure,
 /// because a closure of 3,000 instructions was not inlined, and so was compiled for the baseline alone.)
@@ -212,24 +215,38 @@ macro_rules! compiled_for_each_level {
         )]
         $visibility fn $name<$($parameters)*>(level: crate::simd::Level, $($argument: $type),*) $(-> $result)? {
             #[cfg(simd_x86_64)]
-            {
-                use crate::simd::{Avx2, Avx512, Level};
-
+            if let crate::simd::Level::Avx512(lanes) = level {
                 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt,avx2,fma")]
-                fn avx512<$($parameters)*>(lanes: Avx512, $($argument: $type),*) $(-> $result)? {
+                fn avx512<$($parameters)*>(lanes: crate::simd::Avx512, $($argument: $type),*) $(-> $result)? {
                     $generic::<_, $($names)*>(lanes, $($argument),*)
                 }
+                // SAFETY: the token proves that the processor has AVX-512.
+                return unsafe { avx512::<$($names)*>(lanes, $($argument),*) };
+            }
+            crate::simd::compiled_for_each_level! {
+                #[inline(always)]
+                fn narrower[$($parameters)*][$($names)*]($($argument: $type),*) $(-> $result)?
+                    = $generic, up to AVX2;
+            }
+            narrower::<$($names)*>(level, $($argument),*)
+        }
+    };
+    ($(#[$attribute:meta])* $visibility:vis fn $name:ident [$($parameters:tt)*] [$($names:tt)*]
+        ($($argument:ident: $type:ty),* $(,)?) $(-> $result:ty)? = $generic:ident, up to AVX2;) => {
+        $(#[$attribute])*
+        #[cfg_attr(
+            simd_x86_64,
+            expect(unsafe_code, reason = "code for processors found only when the program runs")
+        )]
+        $visibility fn $name<$($parameters)*>(level: crate::simd::Level, $($argument: $type),*) $(-> $result)? {
+            #[cfg(simd_x86_64)]
+            if let Some(lanes) = level.avx2() {
                 #[target_feature(enable = "avx2,fma,popcnt")]
-                fn avx2<$($parameters)*>(lanes: Avx2, $($argument: $type),*) $(-> $result)? {
+                fn avx2<$($parameters)*>(lanes: crate::simd::Avx2, $($argument: $type),*) $(-> $result)? {
                     $generic::<_, $($names)*>(lanes, $($argument),*)
                 }
-                match level {
-                    // SAFETY: the token proves that the processor has AVX-512.
-                    Level::Avx512(lanes) => return unsafe { avx512::<$($names)*>(lanes, $($argument),*) },
-                    // SAFETY: the token proves that the processor has AVX2, FMA and POPCNT.
-                    Level::Avx2(lanes) => return unsafe { avx2::<$($names)*>(lanes, $($argument),*) },
-                    _ => {}
-                }
+                // SAFETY: the token proves that the processor has AVX2, FMA and POPCNT.
+                return unsafe { avx2::<$($names)*>(lanes, $($argument),*) };
             }
             let _ = level;
             $generic::<_, $($names)*>(crate::simd::BASELINE, $($argument),*)

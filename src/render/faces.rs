@@ -188,7 +188,7 @@ compiled_for_each_level! {
         faces: &Faces<'_>,
         picks: &[u32],
         flat: &mut [[U8F8; 3]],
-    ) = light_faces_fully_by;
+    ) = light_faces_fully_by, up to AVX2;
 }
 
 #[inline(always)]

@@ -103,7 +103,7 @@ impl Direct<'_> {
 compiled_for_each_level! {
     /// Draws the shades of every span, tinted.
     #[inline(never)]
-    fn show_shades[T: Tint, D: Destination][T, D](spans: &Spans<'_>, tint: T, to: &mut D) = show_shades_by;
+    fn show_shades[T: Tint, D: Destination][T, D](spans: &Spans<'_>, tint: T, to: &mut D) = show_shades_by, up to AVX2;
 }
 
 #[inline(always)]

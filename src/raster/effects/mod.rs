@@ -225,7 +225,7 @@ compiled_for_each_level! {
         bytes: (&mut [u8], Option<&[u8; 65_536]>),
         target: &mut Target<'_>,
         keeps: bool,
-    ) -> u32 = write_by;
+    ) -> u32 = write_by, up to AVX2;
 }
 
 #[inline(always)]

@@ -343,7 +343,7 @@ impl Shaded {
 compiled_for_each_level! {
     /// Fills spans with a shader for each face.
     #[inline(never)]
-    fn fill_by_shader[][](spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) = fill_by_shader_at;
+    fn fill_by_shader[][](spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) = fill_by_shader_at, up to AVX2;
 }
 
 #[inline(always)]

@@ -105,14 +105,14 @@ compiled_for_each_level! {
     /// Draws the texels of every span, linear on the screen.
     #[inline(never)]
     fn show_affine[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D)
-        = show_affine_by;
+        = show_affine_by, up to AVX2;
 }
 
 compiled_for_each_level! {
     /// Draws the texels of every span, linear on the screen, each face from one level of the image.
     #[inline(never)]
     fn show_affine_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: &mut D)
-        = show_affine_levels_by;
+        = show_affine_levels_by, up to AVX2;
 }
 
 compiled_for_each_level! {
@@ -127,7 +127,7 @@ compiled_for_each_level! {
     /// pixels.
     #[inline(never)]
     fn show_levels[T: Tint, D: Destination][T, D](spans: &Spans<'_>, image: Image<'_>, tint: T, to: (&mut D, Level))
-        = show_levels_by;
+        = show_levels_by, up to AVX2;
 }
 
 #[inline(always)]
@@ -400,7 +400,7 @@ compiled_for_each_level! {
         image: LevelTexels<'_>,
         range: (usize, usize),
         places: &mut StoredPlaces,
-    ) = places_in_doubles_by;
+    ) = places_in_doubles_by, up to AVX2;
 }
 
 #[inline(always)]
