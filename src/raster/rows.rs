@@ -557,17 +557,17 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let has_depths = has_depths::<P, DEPTHS>(list);
     // Compiled for both where registers are few: they would be spilled around conditions further inside.
     if const { align_of::<S::F64>() == 32 } && has_depths {
-        eight_rows(s, setup, shades, (i, first), list, true);
+        list_whole_rows(s, setup, shades, (i, first), list, true);
     } else if const { align_of::<S::F64>() == 32 } {
-        eight_rows(s, setup, shades, (i, first), list, false);
+        list_whole_rows(s, setup, shades, (i, first), list, false);
     } else {
-        eight_rows(s, setup, shades, (i, first), list, has_depths);
+        list_whole_rows(s, setup, shades, (i, first), list, has_depths);
     }
 }
 
 /// [`list_eight_rows`], with depths or without.
 #[inline(always)]
-fn eight_rows<S: Lanes8, P: Shades8>(
+fn list_whole_rows<S: Lanes8, P: Shades8>(
     s: S,
     setup: &TriangleSetup8,
     shades: &mut P,
@@ -594,11 +594,6 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let lane = OneTriangle(i);
     let has_depths = has_depths::<P, DEPTHS>(list);
     let rows = EightRows::new(s, setup, (i, first), list, has_depths);
-    if clip.is_none() && s.to_bitmask(s.is_greater(rows.length, s.splat_i32(longest))) == 0 {
-        let spans = rows.spans(s, setup, shades, i);
-        shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
-        return;
-    }
     let ends = &rows.ends;
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame relative to the box's first. All are below 4,096.
@@ -614,32 +609,38 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
     let row_origin = left;
     let dz = lane.load_i64(s, &setup.z_per_column);
+    // Often all rows are short enough.
+    let are_whole = clip.is_none() && s.to_bitmask(s.is_greater(rows.length, s.splat_i32(longest))) == 0;
     for _ in 0..pieces {
         let end = s.add(left, s.splat_f64(longest.into()));
-        let (mut start, mut right) = (left, s.min(ends.right, end));
-        if let Some(clip) = clip {
-            start = s.max(left, side(clip.x0));
-            right = s.min(right, side(clip.x1));
-        }
-        let parts = Parts { row: row_origin, end: last, seed: left, start };
-        let (mut paint, columns) = shades.fill_of(s, lane, setup, ends, &parts);
-        if P::IS_LINEAR && clip.is_some() {
-            // A piece that begins left of the rectangle continues from its start.
-            paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
-        }
-        let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
-        let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
-        let spans = Spans8 {
-            at: s.add_i32(rows.at, moved),
-            cell: s.add_i32(rows.cell, moved),
-            length: s.select_i32(is_row, length, s.splat_i32(0)),
-            paint,
-            z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
-            columns,
+        let spans = if are_whole {
+            rows.spans(s, setup, shades, i)
+        } else {
+            let (mut start, mut right) = (left, s.min(ends.right, end));
+            if let Some(clip) = clip {
+                start = s.max(left, side(clip.x0));
+                right = s.min(right, side(clip.x1));
+            }
+            let parts = Parts { row: row_origin, end: last, seed: left, start };
+            let (mut paint, columns) = shades.fill_of(s, lane, setup, ends, &parts);
+            if P::IS_LINEAR && clip.is_some() {
+                // A piece that begins left of the rectangle continues from its start.
+                paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
+            }
+            let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
+            let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
+            Spans8 {
+                at: s.add_i32(rows.at, moved),
+                cell: s.add_i32(rows.cell, moved),
+                length: s.select_i32(is_row, length, s.splat_i32(0)),
+                paint,
+                z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
+                columns,
+            }
         };
-        append(s, shades, list, &spans, depth_steps(setup, i, has_depths));
+        shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
         left = end;
-        if s.to_bitmask(s.is_less(left, ends.right)) == 0 {
+        if are_whole || s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;
         }
     }

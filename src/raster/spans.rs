@@ -245,14 +245,14 @@ fn draw_shaded_by<S: Lanes8>(
     draw_triangles::<S, _, true>(s, of, place, target, &mut shades, list)
 }
 
-/// Reads the corners of the first eight of these triangles.
-#[inline(always)]
-fn gather<P: Shades8, const DEPTHS: bool>(corners: &mut Corners8, triangles: &Triangles<'_>, picks: &Picks<'_>) {
-    if P::IS_FLAT {
-        corners.gather::<DEPTHS, true>(triangles, picks);
-    } else {
-        corners.gather::<DEPTHS, false>(triangles, picks);
-    }
+/// [`Corners8::gather`], not compiled for each level: it is called once for many triangles.
+#[inline(never)]
+fn gather_first<const DEPTHS: bool, const FLAT: bool>(
+    corners: &mut Corners8,
+    triangles: &Triangles<'_>,
+    picks: &Picks<'_>,
+) {
+    corners.gather::<DEPTHS, FLAT>(triangles, picks);
 }
 
 /// Draws triangles; if there are cells, only where they are nearer. `DEPTHS` may be false if there are none.
@@ -276,7 +276,11 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
     let count = picks.picks.len();
-    gather::<P, DEPTHS>(&mut corners, triangles, &picks);
+    if P::IS_FLAT {
+        gather_first::<DEPTHS, true>(&mut corners, triangles, &picks);
+    } else {
+        gather_first::<DEPTHS, false>(&mut corners, triangles, &picks);
+    }
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
             shades.draw::<S, DEPTHS>(s, list, target);
@@ -292,7 +296,12 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         );
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
-        gather::<P, DEPTHS>(&mut corners, triangles, &picks.range(count.min((number + 1) * LANES), count));
+        let next = picks.range(count.min((number + 1) * LANES), count);
+        if P::IS_FLAT {
+            corners.gather::<DEPTHS, true>(triangles, &next);
+        } else {
+            corners.gather::<DEPTHS, false>(triangles, &next);
+        }
         // Only for the last triangles: filling calls the C library.
         if eight.len() < LANES {
             setup.rows[eight.len()..].fill(0);
@@ -320,34 +329,14 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 continue;
             }
             // A triangle without area has no rows, and no plane.
-            if rows <= 0 {
-                continue;
-            }
-            if has_depths {
-                setup.put_depth_plane(i, &of.depth_plane(number * LANES + i).raised_by(layout.depth_base));
-            }
-            shades.set_up_large(i, &setup);
-            let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
-            let pieces = of.pieces(pick);
-            // Otherwise a row is one piece, however long.
-            let longest = if pieces > 1 { RESEED } else { MAX_WIDTH / 256 };
-            let (mut first, mut end) = (0, rows);
-            if let Some(clip) = clip {
-                // All inside a frame, at most 4,096.
-                let row = setup.row[i % LANES];
-                (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
-            }
-            while first < end {
-                if !list.has_room(LANES * pieces) {
-                    shades.draw::<S, DEPTHS>(s, list, target);
-                }
-                let (part, cut) = ((i, first), (pieces, longest));
-                rows::part(
-                    s,
+            if rows > 0 {
+                let (setup, place) = (&mut setup, (layout, clip));
+                let (target, spans) = (&mut *target, (&mut *shades, &mut *list));
+                // By a call, which leaves the registers to small triangles.
+                s.apart(
                     #[inline(always)]
-                    || rows::list_pieces::<S, P, DEPTHS>(s, &setup, shades, part, cut, (clip, layout.width), list),
+                    move || list_large::<S, P, DEPTHS>(s, of, (number, i), setup, place, target, spans),
                 );
-                first += LANES as i32;
             }
         }
     }
@@ -355,6 +344,43 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let (spans, covered, nearer) = list.counts();
     let (pixels, tested) = if has_depths { (nearer, covered) } else { (covered, 0) };
     DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
+}
+
+/// Lists the rows of triangle `i` of batch `number`, which is not a small one.
+#[inline(always)]
+fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
+    s: S,
+    of: Drawn<'_>,
+    (number, i): (usize, usize),
+    setup: &mut TriangleSetup8,
+    (layout, clip): Place,
+    target: &mut Target<'_>,
+    (shades, list): (&mut P, &mut SpanList),
+) {
+    let k = number * LANES + i;
+    let pick = Pick(of.picks.picks[k]);
+    if rows::has_depths::<P, DEPTHS>(list) {
+        setup.put_depth_plane(i, &of.depth_plane(k).raised_by(layout.depth_base));
+    }
+    shades.set_up_large(i, setup);
+    let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
+    let pieces = of.pieces(pick);
+    // Otherwise a row is one piece, however long.
+    let longest = if pieces > 1 { RESEED } else { MAX_WIDTH / 256 };
+    let (mut first, mut end) = (0, setup.rows[i % LANES]);
+    if let Some(clip) = clip {
+        // All inside a frame, at most 4,096.
+        let row = setup.row[i % LANES];
+        (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
+    }
+    while first < end {
+        if !list.has_room(LANES * pieces) {
+            shades.draw::<S, DEPTHS>(s, list, target);
+        }
+        let (part, cut) = ((i, first), (pieces, longest));
+        rows::list_pieces::<S, P, DEPTHS>(s, setup, shades, part, cut, (clip, layout.width), list);
+        first += LANES as i32;
+    }
 }
 
 #[cfg(all(test, feature = "std"))]

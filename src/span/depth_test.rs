@@ -31,6 +31,33 @@ pub(crate) fn test_span<S: Lanes8>(
         *mask = u64::from(u32::MAX) << 32 | u64::from(stays);
         return stays.count_zeros() / 8;
     }
+    test_blocks(s, (cells, length), [z, dz], keeps, masks)
+}
+
+/// Tests like [`test_span`], eight pixels at a time, by a call: it is compiled once for each level, not in each loop
+/// over texels.
+#[inline(always)]
+pub(crate) fn test_blocks<S: Lanes8>(
+    s: S,
+    (cells, length): (&mut [u32], usize),
+    depths: [i64; 2],
+    keeps: bool,
+    masks: &mut [u64],
+) -> u32 {
+    s.apart(
+        #[inline(always)]
+        move || test_blocks_by(s, (cells, length), depths, keeps, masks),
+    )
+}
+
+#[inline(always)]
+fn test_blocks_by<S: Lanes8>(
+    s: S,
+    (cells, length): (&mut [u32], usize),
+    [z, dz]: [i64; 2],
+    keeps: bool,
+    masks: &mut [u64],
+) -> u32 {
     let (mut cells, mut z, mut left, mut nearer) = (cells, z, length, 0);
     for mask in masks {
         let stays = if cells.len() < LANES {

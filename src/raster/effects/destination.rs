@@ -5,7 +5,7 @@ use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::{F32Lanes8, Lanes8};
-use crate::span::depth_test::{Masks, test_span};
+use crate::span::depth_test::{Masks, test_blocks};
 use crate::span::list::{SpanDepth, chunk_at};
 use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
 
@@ -247,7 +247,7 @@ impl Destination for Masked<'_> {
             let SpanDepth { cell, z, dz } = spans.depth(i);
             let Some(cells) = all.get_mut((cell + before) as usize..) else { return };
             let depths = [z.wrapping_add(dz.wrapping_mul(before.into())), dz];
-            let nearer = test_span(s, (cells, length), depths, self.keeps, masks);
+            let nearer = test_blocks(s, (cells, length), depths, self.keeps, masks);
             self.nearer += nearer;
             if nearer == 0 {
                 return;
