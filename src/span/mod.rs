@@ -268,7 +268,10 @@ impl Kernel {
     ) -> u32 {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
-            return simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades);
+            return match self.avx512() {
+                Some(avx512) => simd::avx512::fill_spans_16_16(avx512, pixels, cells, spans, shades),
+                None => simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades),
+            };
         }
         match cells {
             None => {

@@ -129,13 +129,37 @@ pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32],
         return 0;
     }
     // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
-    unsafe { each_nearer(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans) }
+    unsafe { each_nearer::<false>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, |_, _| (0, 0)) }
 }
 
+/// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
+/// Returns the number of pixels written.
+pub(crate) fn fill_spans_16_16(
+    _: Avx512,
+    pixels: &mut [u8],
+    cells: &mut [u32],
+    spans: &SpanList,
+    shades: impl Fn(usize, u32) -> (u32, u32),
+) -> u32 {
+    if !spans.are_inside(pixels) || !spans.are_inside_cells(cells) {
+        return 0;
+    }
+    // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
+    unsafe { each_nearer::<true>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, shades) }
+}
+
+/// Fills every span where it is nearer; with `FIXED16`, by the shades in 16.16 that `shades` returns.
+///
 /// # Safety
 /// All spans lie inside the pixels and cells.
 #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl,bmi2,popcnt")]
-unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32 {
+unsafe fn each_nearer<const FIXED16: bool>(
+    pixels: *mut u8,
+    cells: *mut u32,
+    spans: &SpanList,
+    shades: impl Fn(usize, u32) -> (u32, u32),
+) -> u32 {
+    let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     let numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
     // SAFETY: 64 bytes; the load requires no alignment.
     let upper = unsafe { _mm512_loadu_si512(black_box(&UPPER_HALVES).as_ptr().cast()) };
@@ -151,18 +175,29 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
         let (mut row, mut cell) = unsafe { (pixels.add(at as usize), cells.add(cell as usize)) };
         let steps = _mm512_set1_epi64(dz);
         let mut z0 = _mm512_add_epi64(_mm512_mullo_epi64(steps, numbers), _mm512_set1_epi64(z));
+        let (mut fixed, mut fixed_step) = (_mm512_setzero_si512(), _mm512_setzero_si512());
+        if FIXED16 {
+            let (start, step) = shades(k, paint);
+            fixed_step = _mm512_set1_epi32(step.cast_signed());
+            let start = _mm512_set1_epi32(start.cast_signed());
+            fixed = _mm512_add_epi32(_mm512_mullo_epi32(fixed_step, lanes), start);
+        }
         if length <= 8 {
             // Eight cells: with sixteen nearly every access would touch two cache lines instead of one.
             let mask = ones(length as usize) as u8;
             let depths = _mm512_castsi512_si256(_mm512_permutexvar_epi32(upper, z0));
-            // shade + j·step, of which bits 8 to 15 count.
-            let shades = _mm256_madd_epi16(_mm256_set1_epi32(paint.cast_signed()), numbered);
+            // Bits 16 to 23 of a shade in 16.16, or bits 8 to 15 of shade + j·step.
+            let bytes = if FIXED16 {
+                _mm256_srli_epi32::<16>(_mm512_castsi512_si256(fixed))
+            } else {
+                _mm256_srli_epi32::<8>(_mm256_madd_epi16(_mm256_set1_epi32(paint.cast_signed()), numbered))
+            };
             // SAFETY: the masks have a bit for each of the span's pixels, which are at most eight.
             unsafe {
                 let before = _mm256_maskz_loadu_epi32(mask, cell.cast());
                 let mask = _mm256_mask_cmpgt_epu32_mask(mask, depths, before);
                 _mm256_mask_storeu_epi32(cell.cast(), mask, depths);
-                _mm256_mask_cvtepi32_storeu_epi8(row.cast(), mask, _mm256_srli_epi32::<8>(shades));
+                _mm256_mask_cvtepi32_storeu_epi8(row.cast(), mask, bytes);
                 nearer += mask.count_ones();
             }
             continue;
@@ -178,7 +213,11 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
             let mask = ones(left.min(16)) as u16;
             let depths = _mm512_permutex2var_epi32(z0, upper, z1);
             let odd = _mm_add_epi16(even, step);
-            let bytes = _mm_ternarylogic_epi32::<0xF8>(_mm_srli_epi16::<8>(even), odd, odd_bytes);
+            let bytes = if FIXED16 {
+                _mm512_cvtepi32_epi8(_mm512_srli_epi32::<16>(fixed))
+            } else {
+                _mm_ternarylogic_epi32::<0xF8>(_mm_srli_epi16::<8>(even), odd, odd_bytes)
+            };
             // SAFETY: the masks have a bit for each of the pixels that are left, up to sixteen.
             unsafe {
                 let before = _mm512_maskz_loadu_epi32(mask, cell.cast());
@@ -195,6 +234,7 @@ unsafe fn each_nearer(pixels: *mut u8, cells: *mut u32, spans: &SpanList) -> u32
             unsafe { (row, cell) = (row.add(16), cell.add(16)) };
             (z0, z1) = (_mm512_add_epi64(z0, next_z), _mm512_add_epi64(z1, next_z));
             even = _mm_add_epi16(even, next);
+            fixed = _mm512_add_epi32(fixed, _mm512_slli_epi32::<4>(fixed_step));
         }
     }
     nearer
