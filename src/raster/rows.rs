@@ -9,11 +9,11 @@
 //! lies left of the other in exact arithmetic, and rounding up preserves their order.
 
 use super::frame::Rect;
-use super::setup::{Basis, Corners8, Edges, Floats, Ints, TriangleSetup8, ValuePlanes8};
+use super::setup::{Corners8, Edges, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
-use crate::span::list::{DepthSteps, SpanColumns, SpanList, Spans8, Target};
+use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
 
 /// The greatest height, in rows, of small triangles that are walked eight at a time; their rows are
 /// sorted by triangle afterwards.
@@ -161,42 +161,27 @@ pub(super) trait Shades8 {
     /// True if each triangle has a single shade, so that no planes of linear shades are needed.
     const IS_FLAT: bool = false;
 
-    /// Further columns of eight spans.
-    type Columns<S: Lanes8>: SpanColumns<S>;
-
-    /// Returns whether fills are computed from the planes of linear shades.
-    #[inline(always)]
-    fn has_planes(&self) -> bool {
-        !Self::IS_FLAT
-    }
-
     /// Returns whether spans have to be drawn before eight more triangles are set up.
     fn is_full(&self) -> bool;
+
+    /// Returns whether there is room for the fills of this many rows of eight.
+    fn has_room(&self, rows: usize) -> bool;
 
     /// Begins the eight triangles from pick `first` on.
     fn begin(&mut self, first: usize);
 
-    /// Completes the set-up of eight triangles whose edges and linear shades are already set up.
-    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8);
+    /// Sets up eight triangles, and the fills of their spans.
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool));
 
-    /// The fills of the spans of rows, as columns of the list.
+    /// The fills of the spans of rows: shades with their steps, or the indices of their records.
     fn fill_of<S: Lanes8>(
-        &self,
+        &mut self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
         ends: &RowEnds<S>,
         parts: &Parts<S>,
-    ) -> (S::I32, Self::Columns<S>);
-
-    /// Appends eight spans to a list, with the change of their depths if it has depths.
-    fn append<S: Lanes8>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, Self::Columns<S>>,
-        dz: Option<DepthSteps<S>>,
-    );
+    ) -> S::I32;
 
     /// Completes the set-up of triangle `i` of the eight, which is not a small one.
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
@@ -220,7 +205,6 @@ impl<const FLAT: bool> Linear<FLAT> {
 impl<const FLAT: bool> Shades8 for Linear<FLAT> {
     const IS_LINEAR: bool = true;
     const IS_FLAT: bool = FLAT;
-    type Columns<S: Lanes8> = ();
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -228,31 +212,38 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
     }
 
     #[inline(always)]
+    fn has_room(&self, _: usize) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, s: S, _: &Basis<S>, corners: &Corners8, _: &TriangleSetup8) {
-        if FLAT {
-            // At most 0xFF80.
-            s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
-        }
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
+        part(
+            s,
+            #[inline(always)]
+            || {
+                setup.set_up(s, corners, of, !FLAT);
+                if FLAT {
+                    // At most 0xFF80.
+                    s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
+                }
+            },
+        );
     }
 
     #[inline(always)]
     fn fill_of<S: Lanes8>(
-        &self,
+        &mut self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
         ends: &RowEnds<S>,
         parts: &Parts<S>,
-    ) -> (S::I32, ()) {
-        (if FLAT { lane.load_i32(s, &self.paint) } else { ends.paint(s, lane, setup, parts.seed) }, ())
-    }
-
-    #[inline(always)]
-    fn append<S: Lanes8>(&mut self, s: S, list: &mut SpanList, spans: &Spans8<S, ()>, dz: Option<DepthSteps<S>>) {
-        list.append(s, spans, dz);
+    ) -> S::I32 {
+        if FLAT { lane.load_i32(s, &self.paint) } else { ends.paint(s, lane, setup, parts.seed) }
     }
 
     #[inline(always)]
@@ -348,10 +339,10 @@ impl<S: Lanes8> RowCursor8<S> {
         &mut self,
         s: S,
         setup: &TriangleSetup8,
-        shades: &P,
+        shades: &mut P,
         list: &SpanList,
         (number, has_depths): (i32, bool),
-    ) -> Spans8<S, P::Columns<S>> {
+    ) -> Spans8<S> {
         if const { is_apart::<S, P>() } {
             s.apart(
                 #[inline(always)]
@@ -367,10 +358,10 @@ impl<S: Lanes8> RowCursor8<S> {
         &mut self,
         s: S,
         setup: &TriangleSetup8,
-        shades: &P,
+        shades: &mut P,
         list: &SpanList,
         (number, has_depths): (i32, bool),
-    ) -> Spans8<S, P::Columns<S>> {
+    ) -> Spans8<S> {
         let lane = EachTriangle;
         let j = s.splat_f64(f64::from(number));
         let number = s.splat_i32(number);
@@ -383,14 +374,13 @@ impl<S: Lanes8> RowCursor8<S> {
             self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let (paint, columns) = shades.fill_of(s, lane, setup, &ends, &parts);
+        let paint = shades.fill_of(s, lane, setup, &ends, &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
             length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
             paint,
             z,
-            columns,
         };
         self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
         if has_depths {
@@ -430,26 +420,20 @@ fn depth_steps<S: Lanes8>(setup: &TriangleSetup8, i: usize, has_depths: bool) ->
 /// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that
 /// the call is not compiled for the other levels.
 #[inline(always)]
-pub(super) fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
+fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
     if const { are_arrays::<S>() } { s.apart(part) } else { part() }
 }
 
-/// Appends spans by [`Shades8::append`], which is called or inlined as the level requires.
+/// Appends spans by a call or inlined, as the level requires.
 #[inline(always)]
-fn append<S: Lanes8, P: Shades8>(
-    s: S,
-    shades: &mut P,
-    list: &mut SpanList,
-    spans: &Spans8<S, P::Columns<S>>,
-    dz: Option<DepthSteps<S>>,
-) {
+fn append<S: Lanes8, P: Shades8>(s: S, list: &mut SpanList, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {
     if const { is_apart::<S, P>() } {
         s.apart(
             #[inline(always)]
-            || shades.append(s, list, spans, dz),
+            || list.append(s, spans, dz),
         );
     } else {
-        shades.append(s, list, spans, dz);
+        list.append(s, spans, dz);
     }
 }
 
@@ -472,7 +456,7 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let first = cursor.next(s, setup, shades, list, (0, has_depths));
     if most_rows == 1 {
         let dz = if has_depths { Some(DepthSteps::Each(s.load_i64(&setup.z_per_column))) } else { None };
-        append(s, shades, list, &first, dz);
+        append::<S, P>(s, list, &first, dz);
         return;
     }
     let second = cursor.next(s, setup, shades, list, (1, has_depths));
@@ -484,8 +468,8 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             let [low, high] = s.interleave_i64(dz, dz);
             (of_low, of_high) = (Some(DepthSteps::Each(low)), Some(DepthSteps::Each(high)));
         }
-        append(s, shades, list, &low, of_low);
-        append(s, shades, list, &high, of_high);
+        append::<S, P>(s, list, &low, of_low);
+        append::<S, P>(s, list, &high, of_high);
         return;
     }
     let third = cursor.next(s, setup, shades, list, (2, has_depths));
@@ -496,7 +480,7 @@ pub(super) fn list_short<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         for (quarter, spans) in even.zip(s, &odd[half], list, has_depths).iter().enumerate() {
             let i = 4 * half + 2 * quarter;
             let dz = if has_depths { Some(DepthSteps::Each(s.halves_i64(dz(i), dz(i + 1)))) } else { None };
-            append(s, shades, list, spans, dz);
+            append::<S, P>(s, list, spans, dz);
         }
     }
 }
@@ -537,11 +521,11 @@ impl<S: Lanes8> EightRows<S> {
 
     /// The whole rows as spans.
     #[inline(always)]
-    fn spans<P: Shades8>(&self, s: S, setup: &TriangleSetup8, shades: &P, i: usize) -> Spans8<S, P::Columns<S>> {
+    fn spans<P: Shades8>(&self, s: S, setup: &TriangleSetup8, shades: &mut P, i: usize) -> Spans8<S> {
         let Self { ends, at, cell, length, z } = self;
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let (paint, columns) = shades.fill_of(s, OneTriangle(i), setup, ends, &parts);
-        Spans8 { at: *at, cell: *cell, length: *length, paint, z: *z, columns }
+        let paint = shades.fill_of(s, OneTriangle(i), setup, ends, &parts);
+        Spans8 { at: *at, cell: *cell, length: *length, paint, z: *z }
     }
 }
 
@@ -555,28 +539,8 @@ pub(super) fn list_eight_rows<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     list: &mut SpanList,
 ) {
     let has_depths = has_depths::<P, DEPTHS>(list);
-    // Compiled for both where registers are few: they would be spilled around conditions further inside.
-    if const { align_of::<S::F64>() == 32 } && has_depths {
-        list_whole_rows(s, setup, shades, (i, first), list, true);
-    } else if const { align_of::<S::F64>() == 32 } {
-        list_whole_rows(s, setup, shades, (i, first), list, false);
-    } else {
-        list_whole_rows(s, setup, shades, (i, first), list, has_depths);
-    }
-}
-
-/// [`list_eight_rows`], with depths or without.
-#[inline(always)]
-fn list_whole_rows<S: Lanes8, P: Shades8>(
-    s: S,
-    setup: &TriangleSetup8,
-    shades: &mut P,
-    (i, first): (usize, i32),
-    list: &mut SpanList,
-    has_depths: bool,
-) {
     let spans = EightRows::new(s, setup, (i, first), list, has_depths).spans(s, setup, shades, i);
-    shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
+    list.append(s, &spans, depth_steps(setup, i, has_depths));
 }
 
 /// Lists eight rows of triangle `i` from row `first` on, each split into reseeded pieces of up to `longest` pixels.
@@ -622,7 +586,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 right = s.min(right, side(clip.x1));
             }
             let parts = Parts { row: row_origin, end: last, seed: left, start };
-            let (mut paint, columns) = shades.fill_of(s, lane, setup, ends, &parts);
+            let mut paint = shades.fill_of(s, lane, setup, ends, &parts);
             if P::IS_LINEAR && clip.is_some() {
                 // A piece that begins left of the rectangle continues from its start.
                 paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
@@ -635,10 +599,9 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 length: s.select_i32(is_row, length, s.splat_i32(0)),
                 paint,
                 z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
-                columns,
             }
         };
-        shades.append(s, list, &spans, depth_steps(setup, i, has_depths));
+        list.append(s, &spans, depth_steps(setup, i, has_depths));
         left = end;
         if are_whole || s.to_bitmask(s.is_less(left, ends.right)) == 0 {
             break;

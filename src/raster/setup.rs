@@ -266,8 +266,7 @@ impl TriangleSetup8 {
         &mut self,
         s: S,
         corners: &Corners8,
-        layout: FrameLayout,
-        has_depths: bool,
+        (layout, has_depths): (FrameLayout, bool),
         has_planes: bool,
     ) -> Basis<S> {
         let [ax, ay] = s.halves_of_i64(s.load_i64(&corners.at[0]));
@@ -624,6 +623,6 @@ mod tests {
 
     #[inline(always)]
     fn set_up_by<S: Lanes8>(s: S, setup: &mut TriangleSetup8, corners: &Corners8, layout: FrameLayout) {
-        setup.set_up(s, corners, layout, true, true);
+        setup.set_up(s, corners, (layout, true), true);
     }
 }

@@ -42,12 +42,12 @@ use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
-use crate::lanes::{LANES, three};
+use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float_blocks;
 use crate::span::hyperbolic::fill_estimated_blocks;
-use crate::span::list::{DepthSteps, Span, SpanBytes, SpanList, SpanStarts, Spans8, Starts8, Target, Written};
+use crate::span::list::{Records, Span, SpanBytes, SpanList, SpanNumbers, SpanSums, Target, Written};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -96,27 +96,20 @@ impl ShadedFaces<'_> {
         SortedTriangle::new(&self.triangles.vertices(&self.picks, self.batches.first + face))
     }
 
-    /// The step of a triangle in 16.16.
-    #[inline(always)]
-    fn step_16_16(&self, face: usize) -> u32 {
-        let (batch, lane) = Batches::of_face(face);
-        self.steps[batch].words[0][lane].cast_unsigned()
-    }
-
     /// The perspective-correct bytes of a span, followed by arbitrary ones to fill blocks of eight. Returns false if
     /// estimates cannot decide all of them.
     #[inline(always)]
-    fn estimate<S: Lanes8>(&self, s: S, (span, starts): (Span, [f64; 2]), bytes: &mut Bytes) -> bool {
-        let (batch, lane) = Batches::of_face(face_of(span));
-        let ([dn, dd], [n, d]) = (&self.steps[batch].sums, starts);
-        fill_estimated_blocks(s, (bytes, span.length as usize), [n, dn[lane]], [d, dd[lane]])
+    fn estimate<S: Lanes8>(&self, s: S, face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) -> bool {
+        let (batch, lane) = Batches::of_face(face as usize);
+        let [dn, dd] = &self.steps[batch].sums;
+        fill_estimated_blocks(s, row, [n, dn[lane]], [d, dd[lane]])
     }
 
     /// Computes the bytes of [`estimate`](Self::estimate) in exact arithmetic.
     #[cold]
     #[inline(never)]
-    fn exact_bytes(&self, span: Span, bytes: &mut Bytes) {
-        let triangle = self.triangle(face_of(span));
+    fn exact_bytes(&self, span: Span, face: u32, bytes: &mut Bytes) {
+        let triangle = self.triangle(face as usize);
         let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
         let FrameLayout { first_row, pitch, .. } = self.layout;
         // In a frame: below 4,096.
@@ -127,8 +120,9 @@ impl ShadedFaces<'_> {
     /// The bytes of a span in f32, followed by arbitrary ones to fill blocks of eight.
     #[cfg(feature = "alloc")]
     #[inline(always)]
-    fn quotients(&self, (span, [n, d]): (Span, [f64; 2]), bytes: &mut Bytes) {
-        let (batch, lane) = Batches::of_face(face_of(span));
+    fn quotients(&self, face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) {
+        // The triangle in the lower half.
+        let (batch, lane) = Batches::of_face((face & 0xFFFF) as usize);
         let mut singles = [0.0; 4];
         for (single, bits) in singles.iter_mut().zip(&self.steps[batch].words) {
             *single = f32::from_bits(bits[lane].cast_unsigned());
@@ -137,8 +131,8 @@ impl ShadedFaces<'_> {
         // Rounded once: dividing by 256 changes no bit.
         let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn], [d as f32, dd]);
         // The index of the first pixel, relative to the pixel where the sums are.
-        let first = span.paint.cast_signed() >> 16;
-        fill_float_blocks((bytes, span.length as usize), first, n_and_step, d_and_step, [least, greatest]);
+        let first = face.cast_signed() >> 16;
+        fill_float_blocks(row, first, n_and_step, d_and_step, [least, greatest]);
     }
 }
 
@@ -146,7 +140,12 @@ impl ShadedFaces<'_> {
 pub(super) struct Shaded8<'a> {
     kind: Kind,
     listed: ShadedFaces<'a>,
-    starts: SpanStarts<2>,
+    records: Records,
+    /// 16.16: shade and step. Otherwise the triangle, among those whose steps are stored; in f32 with the index of the
+    /// first pixel, relative to the pixel where the sums are, in the upper half.
+    numbers: SpanNumbers<2>,
+    /// Numerator and divisor.
+    sums: SpanSums<2>,
     bytes: SpanBytes,
     /// 16.16: 255·h, and A.
     fraction: Floats,
@@ -168,7 +167,9 @@ impl<'a> Shaded8<'a> {
         Self {
             kind,
             listed: ShadedFaces { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
-            starts: SpanStarts::NONE,
+            records: Records::NONE,
+            numbers: SpanNumbers::NONE,
+            sums: SpanSums::NONE,
             bytes: SpanBytes::NONE,
             fraction: floats,
             area: floats,
@@ -281,15 +282,18 @@ impl<'a> Shaded8<'a> {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
                 let span = list.span(k);
-                let of = (span, self.starts.of(k).map(|bits| f64::from_bits(bits.cast_unsigned())));
+                let record = span.paint as usize;
+                let face = self.numbers.of(record, 0);
+                let sums = self.sums.of(record).map(|bits| f64::from_bits(bits.cast_unsigned()));
                 let bytes = self.bytes.of_mut(k - first);
+                let row = (&mut bytes[..], span.length as usize);
                 if IS_ESTIMATE {
-                    if !self.listed.estimate(s, of, bytes) {
-                        self.listed.exact_bytes(span, bytes);
+                    if !self.listed.estimate(s, face, sums, row) {
+                        self.listed.exact_bytes(span, face, bytes);
                     }
                 } else {
                     #[cfg(feature = "alloc")]
-                    self.listed.quotients(of, bytes);
+                    self.listed.quotients(face, sums, row);
                 }
             }
             let of = (
@@ -337,16 +341,15 @@ fn product<S: Lanes8>(s: S, a: S::F64, b: S::F64) -> S::I64 {
 
 impl Shades8 for Shaded8<'_> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Starts8<S, 2>;
-
-    #[inline(always)]
-    fn has_planes(&self) -> bool {
-        self.kind == Kind::Fixed16
-    }
 
     #[inline(always)]
     fn is_full(&self) -> bool {
         self.listed.batches.are_full()
+    }
+
+    #[inline(always)]
+    fn has_room(&self, rows: usize) -> bool {
+        self.records.have_room(rows)
     }
 
     #[inline(always)]
@@ -355,25 +358,34 @@ impl Shades8 for Shaded8<'_> {
     }
 
     #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        match self.kind {
-            Kind::Fixed16 => self.set_up_16_16(s, basis, setup),
-            Kind::Hyperbolic => self.set_up_hyperbolic(s, basis, corners),
-            #[cfg(feature = "alloc")]
-            Kind::Float => self.set_up_float(s, basis, corners),
-        }
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
+        s.apart(
+            #[inline(always)]
+            move || {
+                let basis = &setup.set_up(s, corners, of, self.kind == Kind::Fixed16);
+                match self.kind {
+                    Kind::Fixed16 => self.set_up_16_16(s, basis, setup),
+                    Kind::Hyperbolic => self.set_up_hyperbolic(s, basis, corners),
+                    #[cfg(feature = "alloc")]
+                    Kind::Float => self.set_up_float(s, basis, corners),
+                }
+            },
+        );
     }
 
     #[inline(always)]
     fn fill_of<S: Lanes8>(
-        &self,
+        &mut self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
         ends: &RowEnds<S>,
         parts: &Parts<S>,
-    ) -> (S::I32, Starts8<S, 2>) {
+    ) -> S::I32 {
         let (j, magic) = (ends.j, s.splat_f64(ROUND_MAGIC));
+        let record = self.records.begin();
+        // At most 255.
+        let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS));
         // At most 255.
         let face = self.listed.batches.faces(s, lane);
         let steps = &self.listed.steps[self.listed.batches.current()];
@@ -382,24 +394,26 @@ impl Shades8 for Shaded8<'_> {
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
-            let start = s.add_i32(start, s.mul_i32(lane.load_i32(s, &steps.words[0]), skipped));
-            return (face, Starts8([s.to_i64(start), s.splat_i64(0)]));
+            let step = lane.load_i32(s, &steps.words[0]);
+            self.numbers.put(s, record, 0, s.add_i32(start, s.mul_i32(step, skipped)));
+            self.numbers.put(s, record, 1, step);
+            return records;
         }
         if self.kind == Kind::Hyperbolic {
             let columns = s.sub(parts.start, magic);
-            let mut starts = [s.splat_i64(0); 2];
-            for (i, start) in starts.iter_mut().enumerate() {
-                let [at_first, per_row] = &self.planes[i];
+            self.numbers.put(s, record, 0, face);
+            for (i, [at_first, per_row]) in self.planes.iter().enumerate() {
                 let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
-                *start = s.bits(s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row));
+                let sum = s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row);
+                self.sums.put(s, record, i, s.bits(sum));
             }
-            return (face, Starts8(starts));
+            return records;
         }
         // A step of zero is not −0.
         let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
         let at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
         let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
-        let paint = s.or_i32(face, s.shl_i32(first, 16));
+        self.numbers.put(s, record, 0, s.or_i32(face, s.shl_i32(first, 16)));
         let columns = s.sub(at, magic);
         let mut sums = [s.splat_f64(0.0); 2];
         for (weights, values) in self.weights.iter().zip(&self.values) {
@@ -411,23 +425,10 @@ impl Shades8 for Shaded8<'_> {
                 *sum = s.add(*sum, s.mul(weight, lane.load_f64(s, &values[i])));
             }
         }
-        (paint, Starts8([s.bits(sums[0]), s.bits(sums[1])]))
-    }
-
-    #[inline(always)]
-    fn append<S: Lanes8>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, Starts8<S, 2>>,
-        dz: Option<DepthSteps<S>>,
-    ) {
-        let places = list.append(s, spans, dz);
-        if self.kind == Kind::Fixed16 {
-            self.starts.put_first(s, places, spans.columns.0[0]);
-        } else {
-            self.starts.put(s, places, spans.columns);
+        for (i, sum) in sums.into_iter().enumerate() {
+            self.sums.put(s, record, i, s.bits(sum));
         }
+        records
     }
 
     /// The exact steps in f32 of a triangle too large for 64-bit sums.
@@ -462,10 +463,11 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     if !HAS_F64 {
         return;
     }
+    shades.records = Records::NONE;
     match shades.kind {
         Kind::Fixed16 => {
-            let of_span =
-                |k: usize, face: u32| (shades.starts.of(k)[0] as u32, shades.listed.step_16_16(face as usize));
+            let numbers = &shades.numbers;
+            let of_span = |record: u32| (numbers.of(record as usize, 0), numbers.of(record as usize, 1));
             let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
             list.clear(nearer);
         }
@@ -473,13 +475,6 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
         #[cfg(feature = "alloc")]
         Kind::Float => shades.draw_by::<S, false>(s, list, target),
     }
-}
-
-/// The index of a span's triangle, among those whose steps are stored.
-#[inline(always)]
-fn face_of(span: Span) -> usize {
-    // The lower half.
-    (span.paint & 0xFFFF) as usize
 }
 
 type Bytes = [u8; SpanBytes::LENGTH];

@@ -286,14 +286,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             shades.draw::<S, DEPTHS>(s, list, target);
         }
         shades.begin(number * LANES);
-        rows::part(
-            s,
-            #[inline(always)]
-            || {
-                let basis = setup.set_up(s, &corners, layout, has_depths, shades.has_planes());
-                shades.set_up(s, &basis, &corners, &setup);
-            },
-        );
+        shades.set_up(s, &corners, &mut setup, (layout, has_depths));
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
         let next = picks.range(count.min((number + 1) * LANES), count);
@@ -306,7 +299,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         if eight.len() < LANES {
             setup.rows[eight.len()..].fill(0);
         }
-        if !list.has_room(LANES * LANES) {
+        if !list.has_room(LANES * LANES) || !shades.has_room(rows::MAX_SHORT_ROWS as usize) {
             shades.draw::<S, DEPTHS>(s, list, target);
         }
         let are_small = Pick::are_small(eight);
@@ -321,7 +314,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             let (pick, rows) = (Pick(pick), setup.rows[i % LANES]);
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
-                    if !list.has_room(LANES) {
+                    if !list.has_room(LANES) || !shades.has_room(1) {
                         shades.draw::<S, DEPTHS>(s, list, target);
                     }
                     rows::list_eight_rows::<S, P, DEPTHS>(s, &setup, shades, (i, first), list);
@@ -374,7 +367,7 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         (first, end) = ((clip.y0 as i32 - row).max(0), end.min(clip.y1 as i32 - row));
     }
     while first < end {
-        if !list.has_room(LANES * pieces) {
+        if !list.has_room(LANES * pieces) || !shades.has_room(pieces) {
             shades.draw::<S, DEPTHS>(s, list, target);
         }
         let (part, cut) = ((i, first), (pieces, longest));

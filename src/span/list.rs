@@ -66,22 +66,8 @@ pub(crate) struct SpanList {
     nearer: u32,
 }
 
-/// Columns of eight spans besides a linear shade.
-pub(crate) trait SpanColumns<S: Lanes8>: Copy {
-    /// Interleaves the columns of both: span 0 of each, span 1 of each, and so on.
-    fn zip(self, s: S, other: Self) -> [Self; 2];
-}
-
-/// No columns.
-impl<S: Lanes8> SpanColumns<S> for () {
-    #[inline(always)]
-    fn zip(self, _: S, (): Self) -> [Self; 2] {
-        [(); 2]
-    }
-}
-
 /// Eight spans. A span of no length is absent.
-pub(crate) struct Spans8<S: Lanes8, C> {
+pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) at: S::I32,
     pub(crate) cell: S::I32,
     pub(crate) length: S::I32,
@@ -89,7 +75,6 @@ pub(crate) struct Spans8<S: Lanes8, C> {
     pub(crate) paint: S::I32,
     /// Depths, as in the list.
     pub(crate) z: S::I64,
-    pub(crate) columns: C,
 }
 
 /// The change of depth of eight spans per pixel, as in the list.
@@ -100,7 +85,7 @@ pub(crate) enum DepthSteps<S: Lanes8> {
     All(i64),
 }
 
-impl<S: Lanes8, C: SpanColumns<S>> Spans8<S, C> {
+impl<S: Lanes8> Spans8<S> {
     /// Interleaves the steps of both: spans 0, spans 1, and so on.
     #[inline(always)]
     pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, has_depths: bool) -> [Self; 2] {
@@ -113,17 +98,9 @@ impl<S: Lanes8, C: SpanColumns<S>> Spans8<S, C> {
         let [length, more_length] = s.interleave_i32(self.length, other.length);
         let [paint, more_paint] = s.interleave_i32(self.paint, other.paint);
         let [z, more_z] = if has_depths { s.interleave_i64(self.z, other.z) } else { [self.z, other.z] };
-        let [columns, more_columns] = self.columns.zip(s, other.columns);
         [
-            Self { at, cell, length, paint, z, columns },
-            Self {
-                at: more_at,
-                cell: more_cell,
-                length: more_length,
-                paint: more_paint,
-                z: more_z,
-                columns: more_columns,
-            },
+            Self { at, cell, length, paint, z },
+            Self { at: more_at, cell: more_cell, length: more_length, paint: more_paint, z: more_z },
         ]
     }
 }
@@ -207,7 +184,7 @@ impl SpanList {
 
     /// The mask of those of these eight spans that have a length and lie inside.
     #[inline(always)]
-    fn inside<S: Lanes8, C>(&self, s: S, spans: &Spans8<S, C>, has_depths: bool) -> S::Mask {
+    fn inside<S: Lanes8>(&self, s: S, spans: &Spans8<S>, has_depths: bool) -> S::Mask {
         // Each is negative if a span has no length, begins before the pixels, ends beyond 2³¹, or ends beyond the
         // pixels.
         let end = s.add_i32(spans.at, spans.length);
@@ -222,14 +199,9 @@ impl SpanList {
     }
 
     /// Appends those of eight spans that have a length and lie inside, with depths if given their change per pixel. If
-    /// there is no room for eight, some are dropped. Returns which were appended, and the index of the first.
+    /// there is no room for eight, some are dropped.
     #[inline(always)]
-    pub(crate) fn append<S: Lanes8, C>(
-        &mut self,
-        s: S,
-        spans: &Spans8<S, C>,
-        dz: Option<DepthSteps<S>>,
-    ) -> (S::Mask, usize) {
+    pub(crate) fn append<S: Lanes8>(&mut self, s: S, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {
         let &Spans8 { at, cell, length, paint, z, .. } = spans;
         let mask = self.inside(s, spans, dz.is_some());
         let covered = s.select_i32(mask, length, s.splat_i32(0));
@@ -255,7 +227,6 @@ impl SpanList {
             }
         }
         self.count = (count + s.to_bitmask(mask).count_ones() as usize).min(CAPACITY);
-        (mask, count)
     }
 
     /// Draws the spans, where they are nearer if there are cells, and empties the list.
@@ -289,17 +260,11 @@ impl SpanList {
     }
 
     /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it
-    /// lies inside and there is room. Returns its index.
-    pub(crate) fn push(
-        &mut self,
-        [at, cell]: [usize; 2],
-        length: usize,
-        paint: u32,
-        [z, dz]: [i64; 2],
-    ) -> Option<usize> {
+    /// lies inside and there is room. Returns whether it was appended.
+    pub(crate) fn push(&mut self, [at, cell]: [usize; 2], length: usize, paint: u32, [z, dz]: [i64; 2]) -> bool {
         let is_inside = |from: usize, most: i32| from.checked_add(length).is_some_and(|end| end <= most as usize);
         if self.count >= CAPACITY || length == 0 || !is_inside(at, self.pixels) || !is_inside(cell, self.cells) {
-            return None;
+            return false;
         }
         let k = self.count;
         // Below 2³¹.
@@ -307,7 +272,7 @@ impl SpanList {
         (self.z[k], self.dz[k]) = (z, dz);
         self.covered.0[0] = self.covered.0[0].wrapping_add(length as i32);
         self.count += 1;
-        Some(k)
+        true
     }
 
     /// Empties the list after its spans have been drawn and `nearer` pixels have been written.
@@ -378,20 +343,20 @@ impl SpanList {
     /// Fills each span where it is nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
-        self.each_tested(pixels, cells, |_, paint, row, cells, [z, dz]| {
+        self.each_tested(pixels, cells, |paint, row, cells, [z, dz]| {
             // The shade in the lower half, the step in the upper.
             fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z, dz)
         })
     }
 
-    /// Calls a loop that tests depths for each span, with its pixels and cells, its index, its packed shade and step,
+    /// Calls a loop that tests depths for each span, with its packed shade and step, its pixels and cells,
     /// its first depth and its depth step. Returns the sum of the loop's results.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,
         pixels: &mut [u8],
         cells: &mut [D],
-        mut fill: impl FnMut(usize, u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
+        mut fill: impl FnMut(u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
     ) -> u32 {
         let mut written = 0;
         for k in 0..self.count() {
@@ -399,98 +364,107 @@ impl SpanList {
             // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-                written += fill(k, paint, row, cells, [z >> 8, dz >> 8]);
+                written += fill(paint, row, cells, [z >> 8, dz >> 8]);
             }
         }
         written
     }
 }
 
-/// First sums of eight spans that are filled with more than a linear shade.
-#[derive(Clone, Copy)]
-pub(crate) struct Starts8<S: Lanes8, const N: usize>(pub(crate) [S::I64; N]);
+/// Records of spans that are filled with more than a linear shade. A span's shade is then the index of its record.
+///
+/// Eight rows are recorded together, whether or not they have pixels: so nothing but the index has to be compressed,
+/// and sorted by triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Records {
+    /// Number of records in use, a multiple of eight.
+    count: usize,
+}
 
-impl<S: Lanes8, const N: usize> SpanColumns<S> for Starts8<S, N> {
+impl Records {
+    /// Number of records that there can be: those of 64 triangles of up to four rows.
+    const CAPACITY: usize = 256;
+    pub(crate) const NONE: Self = Self { count: 0 };
+
+    /// Returns whether there is room for this many rows of eight.
     #[inline(always)]
-    fn zip(self, s: S, other: Self) -> [Self; 2] {
-        let (mut low, mut high) = (self, other);
-        for i in 0..N {
-            [low.0[i], high.0[i]] = s.interleave_i64(self.0[i], other.0[i]);
-        }
-        [low, high]
+    pub(crate) fn have_room(&self, rows: usize) -> bool {
+        self.count + rows * LANES <= Self::CAPACITY
+    }
+
+    /// Begins eight records. Returns the index of the first.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self) -> usize {
+        let first = self.count;
+        self.count += LANES;
+        first
     }
 }
 
-/// First sums of each span of a list, see [`Starts8`].
+/// Sums in the records of spans, `N` of them each.
 #[derive(Clone, Debug)]
-pub(crate) struct SpanStarts<const N: usize>([Depths; N]);
+#[repr(C, align(64))]
+pub(crate) struct SpanSums<const N: usize>([[i64; Records::CAPACITY]; N]);
 
-impl<const N: usize> SpanStarts<N> {
-    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
+impl<const N: usize> SpanSums<N> {
+    pub(crate) const NONE: Self = Self([[0; Records::CAPACITY]; N]);
 
-    /// Stores the lanes that the mask sets, at the indices from `at` on.
+    /// Stores sum `i` of eight spans.
     #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), starts: Starts8<S, N>) {
-        s.compress_i64(mask, starts.0, self.0.each_mut().map(|to| eight(to, at)));
-    }
-
-    /// Stores only the first sums, like [`put`](Self::put).
-    #[inline(always)]
-    pub(crate) fn put_first<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), first: S::I64) {
-        let [to, ..] = &mut self.0[..] else { return };
-        s.compress_i64(mask, [first], [eight(to, at)]);
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, first: usize, i: usize, sums: S::I64) {
+        s.store_i64(sums, eight_records(&mut self.0[i], first));
     }
 
     #[cfg(feature = "alloc")]
-    pub(crate) fn set(&mut self, k: usize, starts: [i64; N]) {
-        for (to, start) in self.0.iter_mut().zip(starts) {
-            to[k.min(CAPACITY)] = start;
+    pub(crate) fn set(&mut self, record: usize, sums: [i64; N]) {
+        for (to, sum) in self.0.iter_mut().zip(sums) {
+            to[record % Records::CAPACITY] = sum;
         }
     }
 
-    /// The sums of span `k`.
+    /// The sums of a record.
     #[inline(always)]
-    pub(crate) fn of(&self, k: usize) -> [i64; N] {
-        let (k, mut of) = (k.min(CAPACITY), [0; N]);
+    pub(crate) fn of(&self, record: usize) -> [i64; N] {
+        let (record, mut of) = (record % Records::CAPACITY, [0; N]);
         for (i, of) in of.iter_mut().enumerate() {
-            *of = self.0[i][k];
+            *of = self.0[i][record];
         }
         of
     }
 }
 
-/// Further numbers of each span of a list, `N` of them.
-#[cfg(feature = "alloc")]
+/// Numbers in the records of spans, `N` of them each.
 #[derive(Clone, Debug)]
-pub(crate) struct SpanNumbers<const N: usize>([Numbers; N]);
+#[repr(C, align(64))]
+pub(crate) struct SpanNumbers<const N: usize>([[i32; Records::CAPACITY]; N]);
 
-#[cfg(feature = "alloc")]
 impl<const N: usize> SpanNumbers<N> {
-    pub(crate) const NONE: Self = Self([[0; CAPACITY + LANES]; N]);
+    pub(crate) const NONE: Self = Self([[0; Records::CAPACITY]; N]);
 
-    /// Stores the first `count` numbers of the lanes that the mask sets, at the indices from `at` on.
+    /// Stores number `i` of eight spans.
     #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, (mask, at): (S::Mask, usize), numbers: [S::I32; N], count: usize) {
-        // The condition is inside, so that the loop is unrolled and the numbers stay in registers.
-        for (i, (numbers, to)) in numbers.into_iter().zip(&mut self.0).enumerate() {
-            if i < count {
-                s.compress_i32(mask, [numbers], [eight(to, at)]);
-            }
-        }
+    pub(crate) fn put<S: Lanes8>(&mut self, s: S, first: usize, i: usize, numbers: S::I32) {
+        s.store_i32(numbers, eight_records(&mut self.0[i], first));
     }
 
-    /// Number `i` of span `k`.
+    /// Number `i` of a record.
     #[inline(always)]
-    pub(crate) fn of(&self, k: usize, i: usize) -> u32 {
-        self.0[i % N][k.min(CAPACITY)]
+    pub(crate) fn of(&self, record: usize, i: usize) -> u32 {
+        self.0[i % N][record % Records::CAPACITY].cast_unsigned()
     }
 
-    pub(crate) fn set(&mut self, k: usize, numbers: [u32; N]) {
-        let k = k.min(CAPACITY);
+    #[cfg(feature = "alloc")]
+    pub(crate) fn set(&mut self, record: usize, numbers: [u32; N]) {
         for (to, number) in self.0.iter_mut().zip(numbers) {
-            to[k] = number;
+            to[record % Records::CAPACITY] = number.cast_signed();
         }
     }
+}
+
+/// Eight records from a multiple of eight on.
+#[inline(always)]
+fn eight_records<T>(of: &mut [T; Records::CAPACITY], first: usize) -> &mut [T; LANES] {
+    &mut of.as_chunks_mut().0[first / LANES % (Records::CAPACITY / LANES)]
 }
 
 /// Bytes of some spans of a list, 64 each.

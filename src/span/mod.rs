@@ -264,7 +264,7 @@ impl Kernel {
         pixels: &mut [u8],
         cells: &mut Option<Cells<'_>>,
         spans: &list::SpanList,
-        shades: impl Fn(usize, u32) -> (u32, u32),
+        shades: impl Fn(u32) -> (u32, u32),
     ) -> u32 {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
@@ -275,10 +275,10 @@ impl Kernel {
         }
         match cells {
             None => {
-                for (k, list::Span { at, length, paint }) in spans.spans().enumerate() {
+                for list::Span { at, length, paint } in spans.spans() {
                     // No overflow: both are below 2³¹.
                     if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
-                        let (start, step) = shades(k, paint);
+                        let (start, step) = shades(paint);
                         fixed16::fill_16_16(row, start, step);
                     }
                 }
@@ -339,10 +339,10 @@ fn nearer_16_16<D: depth::Cell>(
     pixels: &mut [u8],
     cells: &mut [D],
     spans: &list::SpanList,
-    shades: impl Fn(usize, u32) -> (u32, u32),
+    shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
-    spans.each_tested(pixels, cells, |k, paint, row, cells, [z, dz]| {
-        let (start, step) = shades(k, paint);
+    spans.each_tested(pixels, cells, |paint, row, cells, [z, dz]| {
+        let (start, step) = shades(paint);
         depth::fill_nearer_16_16(row, cells, [start, step], z, dz)
     })
 }

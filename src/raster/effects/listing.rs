@@ -13,7 +13,7 @@ use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
-use crate::lanes::{LANES, three};
+use crate::lanes::{self, LANES, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
 use crate::raster::interpolation::Interpolation;
@@ -26,10 +26,10 @@ use crate::raster::reference::quotient::Divisor;
 use crate::raster::reference::shade::{RESEED, ShadePlane};
 use crate::raster::reference::texture::{AffineLevel, AffinePlane, PerspectiveTexture, depth};
 use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value_of};
-use crate::raster::setup::{Basis, Corners8, Ints, TriangleSetup8, ValuePlanes8};
+use crate::raster::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::simd::Lanes8;
-use crate::span::list::{DepthSteps, SpanColumns, SpanList, SpanNumbers, SpanStarts, Spans8, Starts8, Target};
+use crate::span::list::{Records, SpanList, SpanNumbers, SpanSums, Target};
 use crate::span::texture::Levels;
 
 /// Position of a span in its face, packed into two u32.
@@ -78,71 +78,14 @@ impl Mark {
     }
 }
 
-/// Numbers per span: its mark, and the start of each value with the step in the upper half.
-const NUMBERS: usize = 2 + Value::MAX_COUNT;
+/// Numbers per span: its mark, and the shade and each value at its first pixel, with the step in the upper half.
+const NUMBERS: usize = 3 + Value::MAX_COUNT;
 
 /// Numbers per span for texture coordinates linear on the screen: u and v at its first pixel, and their steps.
 const COORDINATES: usize = 4;
 
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
-
-/// The mapping of spans' texture coordinates, as a constant that the compiler knows, so that unused coordinates take no
-/// registers.
-pub(super) mod mapped {
-    /// Decided at run time.
-    pub(in super::super) const ANY: u8 = 0;
-    pub(in super::super) const NONE: u8 = 1;
-    pub(in super::super) const AFFINE: u8 = 2;
-    /// Linear on the face.
-    pub(in super::super) const ON_FACE: u8 = 3;
-}
-
-#[inline(always)]
-const fn mapping<const MAPPED: u8>(at_run_time: Option<Mapping>) -> Option<Mapping> {
-    match MAPPED {
-        mapped::NONE => None,
-        mapped::AFFINE => Some(Mapping::Affine),
-        mapped::ON_FACE => Some(Mapping::Perspective),
-        _ => at_run_time,
-    }
-}
-
-/// The numbers of eight spans.
-#[derive(Clone, Copy)]
-pub(crate) struct Marks8<S: Lanes8, const MAPPED: u8> {
-    /// The mark's two numbers, and those of the slots in use.
-    numbers: [S::I32; NUMBERS],
-    count: usize,
-    /// The mapping of the coordinates, if there are any.
-    texture: Option<Mapping>,
-    coordinates: [S::I32; COORDINATES],
-    sums: Starts8<S, SUMS>,
-}
-
-impl<S: Lanes8, const MAPPED: u8> SpanColumns<S> for Marks8<S, MAPPED> {
-    #[inline(always)]
-    fn zip(self, s: S, other: Self) -> [Self; 2] {
-        let (mut low, mut high) = (self, other);
-        // The condition is inside, so that the loop is unrolled and the numbers stay in registers.
-        for i in 0..NUMBERS {
-            if i < self.count {
-                [low.numbers[i], high.numbers[i]] = s.interleave_i32(self.numbers[i], other.numbers[i]);
-            }
-        }
-        match mapping::<MAPPED>(self.texture) {
-            Some(Mapping::Affine) => {
-                for i in 0..COORDINATES {
-                    [low.coordinates[i], high.coordinates[i]] =
-                        s.interleave_i32(self.coordinates[i], other.coordinates[i]);
-                }
-            }
-            Some(_) => [low.sums, high.sums] = self.sums.zip(s, other.sums),
-            None => {}
-        }
-        [low, high]
-    }
-}
 
 /// Picked triangles as the stages read them, by their index among the picks.
 #[derive(Clone, Copy)]
@@ -258,23 +201,13 @@ impl FacePlanes8 {
     };
 }
 
-/// Reused memory that accompanies the list of spans: the planes of the faces, and the numbers of
-/// each span.
+/// The data of listed spans and of their faces: reused memory.
 #[derive(Clone, Debug)]
-pub(super) struct Columns {
-    planes: [FacePlanes8; Batches::COUNT],
+pub(super) struct SpanData {
     numbers: SpanNumbers<NUMBERS>,
     coordinates: SpanNumbers<COORDINATES>,
-    sums: SpanStarts<SUMS>,
-}
-
-impl Columns {
-    pub(super) const NONE: Self = Self {
-        planes: [FacePlanes8::NONE; Batches::COUNT],
-        numbers: SpanNumbers::NONE,
-        coordinates: SpanNumbers::NONE,
-        sums: SpanStarts::NONE,
-    };
+    sums: SpanSums<SUMS>,
+    planes: [FacePlanes8; Batches::COUNT],
 }
 
 /// The values set up for each face besides its shade.
@@ -334,66 +267,110 @@ enum WalkedTexture {
 pub(super) struct ListedFaces<'a> {
     pub(super) faces: Faces<'a>,
     wanted: Wanted,
-    pub(super) planes: &'a mut [FacePlanes8; Batches::COUNT],
+    pub(super) data: &'a mut SpanData,
     pub(super) batches: Batches,
-    pub(super) numbers: &'a mut SpanNumbers<NUMBERS>,
-    coordinates: &'a mut SpanNumbers<COORDINATES>,
-    sums: &'a mut SpanStarts<SUMS>,
+    records: Records,
     /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
     /// How one loop per span draws the pixels, where possible.
     pub(super) direct: Option<Direct<'a>>,
 }
 
-/// The data of listed spans and of their faces, for loops.
-#[derive(Clone, Copy)]
-pub(super) struct SpanData<'a> {
-    planes: &'a [FacePlanes8; Batches::COUNT],
-    numbers: &'a SpanNumbers<NUMBERS>,
-    coordinates: &'a SpanNumbers<COORDINATES>,
-    sums: &'a SpanStarts<SUMS>,
-}
+impl SpanData {
+    pub(super) const NONE: Self = Self {
+        numbers: SpanNumbers::NONE,
+        coordinates: SpanNumbers::NONE,
+        sums: SpanSums::NONE,
+        planes: [FacePlanes8::NONE; Batches::COUNT],
+    };
 
-impl<'a> SpanData<'a> {
-    /// The mark of span `k` of the list.
+    /// The mark of the span with this record.
     #[inline(always)]
-    pub(super) fn mark(self, k: usize) -> Mark {
-        Mark([self.numbers.of(k, 0), self.numbers.of(k, 1)])
+    pub(super) fn mark(&self, record: usize) -> Mark {
+        Mark([self.numbers.of(record, 0), self.numbers.of(record, 1)])
     }
 
-    /// u and v at the first pixel of span `k`, and their change per pixel, where the texture is linear on the screen.
+    /// u and v at the first pixel of a span, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
-    pub(super) fn affine(self, k: usize) -> [[u32; 2]; 2] {
-        let of = |i: usize| self.coordinates.of(k, i);
+    pub(super) fn affine(&self, record: usize) -> [[u32; 2]; 2] {
+        let of = |i: usize| self.coordinates.of(record, i);
         [[of(0), of(1)], [of(2), of(3)]]
     }
 
-    /// The sums at the first pixel of span `k`, where the texture is linear on the face.
+    /// The sums at the first pixel of a span, where the texture is linear on the face.
     #[inline(always)]
-    pub(super) fn sums(self, k: usize) -> [f64; SUMS] {
-        let [u, v, d] = self.sums.of(k);
+    pub(super) fn sums(&self, record: usize) -> [f64; SUMS] {
+        let [u, v, d] = self.sums.of(record);
         [f64::from_bits(u.cast_unsigned()), f64::from_bits(v.cast_unsigned()), f64::from_bits(d.cast_unsigned())]
+    }
+
+    /// The shade at the first pixel of a span, with the step in the upper half.
+    #[inline(always)]
+    pub(super) fn shade(&self, record: usize) -> u32 {
+        self.numbers.of(record, 2)
+    }
+
+    /// The linear value in this slot at the first pixel of a span, with the step in the upper half.
+    #[inline(always)]
+    pub(super) fn value(&self, record: usize, slot: usize) -> u32 {
+        self.numbers.of(record, 3 + slot)
     }
 
     /// The planes of a face's batch, and the face's lane.
     #[inline(always)]
-    pub(super) fn planes(self, face: usize) -> (&'a FacePlanes8, usize) {
+    pub(super) fn planes(&self, face: usize) -> (&FacePlanes8, usize) {
         let (batch, lane) = Batches::of_face(face);
         (&self.planes[batch], lane)
-    }
-
-    /// The linear value in this slot at the first pixel of span `k`, with the step in the upper half.
-    #[inline(always)]
-    pub(super) fn value(self, k: usize, slot: usize) -> u32 {
-        self.numbers.of(k, 2 + slot)
     }
 }
 
 impl ListedFaces<'_> {
-    /// The data of the spans and of their faces.
+    /// Sets up eight faces, by a call: it is compiled once, whatever the mapping.
     #[inline(always)]
-    pub(super) fn data(&self) -> SpanData<'_> {
-        SpanData { planes: self.planes, numbers: self.numbers, coordinates: self.coordinates, sums: self.sums }
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
+        s.apart(
+            #[inline(always)]
+            move || {
+                let basis = setup.set_up(s, corners, of, true);
+                self.set_up_planes(s, &basis, corners, setup);
+            },
+        );
+    }
+
+    #[inline(always)]
+    fn set_up_planes<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
+        let Self { faces, wanted, data, batches, .. } = self;
+        let faces = *faces;
+        let Faces { triangles, picks } = faces;
+        let first = batches.first_pick();
+        let picks = &picks.range(first, picks.picks.len().min(first + LANES));
+        let planes = &mut data.planes[batches.current()];
+        (planes.column, planes.row) = (setup.column, setup.row);
+        if let Some(mapping) = wanted.texture {
+            let of_corners = texture_of_corners(triangles, picks);
+            match mapping {
+                Mapping::Affine => {
+                    let fits = planes.affine.set_up(s, basis, &of_corners, wanted.last_level);
+                    // Usually all are small and fit.
+                    let all_fit = fits & 0xFF == 0xFF && Pick::are_small(picks.picks);
+                    let lanes = if all_fit { 0 } else { LANES };
+                    for (lane, &pick) in picks.picks.iter().take(lanes).enumerate() {
+                        if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
+                            let face = faces.corners(first + lane);
+                            let pixel = [setup.column[lane], setup.row[lane]];
+                            let coordinates = [face.texture(0), face.texture(1)];
+                            planes.affine.split(lane, &face.triangle, coordinates, pixel, wanted.last_level);
+                        }
+                    }
+                }
+                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.last_level),
+            }
+        }
+        for (planes, value) in planes.values.iter_mut().zip(wanted.values) {
+            if let Some(value) = value {
+                planes.set_up(s, basis, &value_of_corners(triangles, picks, value));
+            }
+        }
     }
 
     /// The mapping and the last level of an image with levels.
@@ -422,7 +399,7 @@ impl ListedFaces<'_> {
 }
 
 /// Spans with effects: the set-up of their faces, and the stages they pass through.
-pub(in crate::raster) struct EffectSpans<'a, const MAPPED: u8 = { mapped::ANY }> {
+pub(in crate::raster) struct EffectSpans<'a> {
     pub(super) listed: ListedFaces<'a>,
     pipeline: &'a PixelPipeline<'a>,
     buffers: &'a mut Buffers,
@@ -433,25 +410,26 @@ impl<'a> EffectSpans<'a> {
     pub(super) fn new(
         faces: Faces<'a>,
         pipeline: &'a PixelPipeline<'a>,
-        Columns { planes, numbers, coordinates, sums }: &'a mut Columns,
+        data: &'a mut SpanData,
         buffers: &'a mut Buffers,
     ) -> Self {
         let wanted = Wanted::by(pipeline);
         let direct = Direct::of(pipeline);
-        let (batches, walked) = (Batches::NONE, None);
-        let listed = ListedFaces { faces, wanted, planes, batches, numbers, coordinates, sums, walked, direct };
+        let (batches, records, walked) = (Batches::NONE, Records::NONE, None);
+        let listed = ListedFaces { faces, wanted, data, batches, records, walked, direct };
         Self { listed, pipeline, buffers }
     }
 
-    /// The mapping of the spans' texture coordinates, if they have any.
-    pub(super) fn mapping(&self) -> Option<Mapping> {
-        self.listed.wanted.texture
+    /// Draws the spans of a list, and empties it.
+    pub(super) fn draw_spans(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
+        let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
+        self.clear(list, nearer);
     }
 
-    /// The spans, with a mapping that the compiler knows.
-    pub(super) fn with_mapping<const MAPPED: u8>(self) -> EffectSpans<'a, MAPPED> {
-        let Self { listed, pipeline, buffers } = self;
-        EffectSpans { listed, pipeline, buffers }
+    /// Empties a list whose spans have been drawn, `nearer` pixels of them.
+    pub(super) fn clear(&mut self, list: &mut SpanList, nearer: u32) {
+        list.clear(nearer);
+        self.listed.records = Records::NONE;
     }
 
     /// Begins face `k`, whose rows are added one by one.
@@ -459,7 +437,7 @@ impl<'a> EffectSpans<'a> {
         let corners = self.listed.faces.corners(k);
         let triangle = corners.triangle;
         let Wanted { texture, last_level, .. } = self.listed.wanted;
-        let planes = &mut self.listed.planes[0];
+        let planes = &mut self.listed.data.planes[0];
         // Columns and rows are counted from the frame's first.
         (planes.column, planes.row) = ([0; LANES], [0; LANES]);
         let mut levels = None;
@@ -503,7 +481,7 @@ impl<'a> EffectSpans<'a> {
             let value = |plane: &ShadePlane, reseeds: bool| {
                 u32::from(start_at(plane, row, seed, reseeds)) | u32::from(plane.step()) << 16
             };
-            let paint = value(shade, reseeds);
+            let shade = value(shade, reseeds);
             let mut of_slots = [0; Value::MAX_COUNT];
             for (slot, plane) in values.iter().enumerate() {
                 let reseeds = reseeds || slot == Value::Fog.slot();
@@ -512,21 +490,23 @@ impl<'a> EffectSpans<'a> {
             // A column of a frame.
             let z = depth.fixed_at(x, row.y);
             let at = [x as usize; 2];
-            if let Some(k) = list.push(at, (end - x) as usize, paint, [z << 8, depth.step() << 8]) {
+            // A record for each span of the list.
+            let record = list.count();
+            if list.push(at, (end - x) as usize, record as u32, [z << 8, depth.step() << 8]) {
                 let number = (seed - row.origin) / RESEED;
                 let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
-                self.listed.numbers.set(k, [a, b, v0, v1, v2, v3]);
+                self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3]);
                 match texture {
                     Some(WalkedTexture::Affine([u, v])) => {
                         let starts = [u, v].map(|plane| plane.start(seed, row.y));
                         // Modulo 2³²: texels repeat.
                         let steps = [u, v].map(|plane| plane.step() as u32);
-                        self.listed.coordinates.set(k, [starts[0], starts[1], steps[0], steps[1]]);
+                        self.listed.data.coordinates.set(record, [starts[0], starts[1], steps[0], steps[1]]);
                     }
                     Some(WalkedTexture::OnFace(coordinates)) => {
                         let sums = coordinates.sums(seed, row.y).map(|sum| sum.to_bits().cast_signed());
-                        self.listed.sums.set(k, sums);
+                        self.listed.data.sums.set(record, sums);
                     }
                     None => {}
                 }
@@ -535,21 +515,17 @@ impl<'a> EffectSpans<'a> {
     }
 }
 
-impl<const MAPPED: u8> EffectSpans<'_, MAPPED> {
-    /// Draws the spans of a list, and empties it.
-    pub(super) fn draw_spans(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
-        let nearer = draw_listed(&self.listed, list, self.pipeline, self.buffers, target);
-        list.clear(nearer);
-    }
-}
-
-impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
+impl Shades8 for EffectSpans<'_> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Marks8<S, MAPPED>;
 
     #[inline(always)]
     fn is_full(&self) -> bool {
         self.listed.batches.are_full()
+    }
+
+    #[inline(always)]
+    fn has_room(&self, rows: usize) -> bool {
+        self.listed.records.have_room(rows)
     }
 
     #[inline(always)]
@@ -558,115 +534,58 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
     }
 
     #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        let ListedFaces { faces, wanted, planes, batches, .. } = &mut self.listed;
-        let faces = *faces;
-        let Faces { triangles, picks } = faces;
-        let first = batches.first_pick();
-        let picks = &picks.range(first, picks.picks.len().min(first + LANES));
-        let planes = &mut planes[batches.current()];
-        (planes.column, planes.row) = (setup.column, setup.row);
-        if let Some(mapping) = mapping::<MAPPED>(wanted.texture) {
-            let of_corners = texture_of_corners(triangles, picks);
-            match mapping {
-                Mapping::Affine => {
-                    let fits = planes.affine.set_up(s, basis, &of_corners, wanted.last_level);
-                    // Usually all are small and fit.
-                    let all_fit = fits & 0xFF == 0xFF && Pick::are_small(picks.picks);
-                    let lanes = if all_fit { 0 } else { LANES };
-                    for (lane, &pick) in picks.picks.iter().take(lanes).enumerate() {
-                        if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
-                            let face = faces.corners(first + lane);
-                            let pixel = [setup.column[lane], setup.row[lane]];
-                            let coordinates = [face.texture(0), face.texture(1)];
-                            planes.affine.split(lane, &face.triangle, coordinates, pixel, wanted.last_level);
-                        }
-                    }
-                }
-                _ => planes.perspective.set_up(s, basis, corners, &of_corners, wanted.last_level),
-            }
-        }
-        for (planes, value) in planes.values.iter_mut().zip(wanted.values) {
-            if let Some(value) = value {
-                planes.set_up(s, basis, &value_of_corners(triangles, picks, value));
-            }
-        }
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
+        self.listed.set_up(s, corners, setup, of);
     }
 
     #[inline(always)]
     fn fill_of<S: Lanes8>(
-        &self,
+        &mut self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
         ends: &RowEnds<S>,
         parts: &Parts<S>,
-    ) -> (S::I32, Marks8<S, MAPPED>) {
+    ) -> S::I32 {
+        let ListedFaces { wanted, data, batches, records, .. } = &mut self.listed;
+        let SpanData { numbers, coordinates, sums, planes } = &mut **data;
+        let (planes, record) = (&planes[batches.current()], records.begin());
         let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
-        let before = s.sub_i32(seed, row);
-        let Wanted { values: wanted, slots, reseeds, texture, .. } = &self.listed.wanted;
-        let begin = if *reseeds { parts.seed } else { parts.row };
-        let mut paint = ends.paint(s, lane, setup, begin);
-        if !reseeds {
-            paint = advance(s, paint, before);
-        }
-        let planes = &self.listed.planes[self.listed.batches.current()];
-        let mut values = [s.splat_i32(0); Value::MAX_COUNT];
-        for slot in 0..Value::MAX_COUNT {
-            if slot >= *slots {
-                continue;
-            }
-            let Some(value) = wanted[slot] else { continue };
-            let reseeds = *reseeds || !matches!(value, Value::Channel(_));
-            let begin = if reseeds { parts.seed } else { parts.row };
-            values[slot] = value_of(s, lane, (&planes.values[slot], &setup.inverse), j, begin);
-            if !reseeds {
-                values[slot] = advance(s, values[slot], before);
+        let Wanted { values, slots, reseeds, texture, .. } = *wanted;
+        let inverse = &setup.inverse;
+        numbers.put(s, record, 2, value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds));
+        for (slot, value) in values.iter().enumerate().take(slots) {
+            if let Some(value) = value {
+                let reseeds = reseeds || !matches!(value, Value::Channel(_));
+                numbers.put(s, record, 3 + slot, value_in(s, lane, (&planes.values[slot], inverse), j, parts, reseeds));
             }
         }
-        let face = self.listed.batches.faces(s, lane);
         let skipped = s.sub_i32(s.low_bits(parts.start), seed);
         let last = s.sub_i32(s.sub_i32(s.low_bits(parts.end), s.splat_i32(1)), seed);
         // For spans that exist the fields are in range: see `Mark`.
-        let mark = s.or_i32(face, s.shl_i32(skipped, 6));
-        let mark = s.or_i32(mark, s.shl_i32(s.shr_i32(before, 6), 12));
+        let mark = s.or_i32(batches.faces(s, lane), s.shl_i32(skipped, 6));
+        let mark = s.or_i32(mark, s.shl_i32(s.shr_i32(s.sub_i32(seed, row), 6), 12));
         let mark = s.or_i32(mark, s.shl_i32(last, 19));
         let number = s.low_bits(s.add(j, s.splat_f64(ROUND_MAGIC)));
-        let [v0, v1, v2, v3] = values;
-        let numbers = [mark, s.or_i32(seed, s.shl_i32(number, 16)), v0, v1, v2, v3];
-        let (mut coordinates, mut sums) = ([s.splat_i32(0); COORDINATES], Starts8([s.splat_i64(0); SUMS]));
-        let planes = &self.listed.planes[self.listed.batches.current()];
-        match mapping::<MAPPED>(*texture) {
+        numbers.put(s, record, 0, mark);
+        numbers.put(s, record, 1, s.or_i32(seed, s.shl_i32(number, 16)));
+        match texture {
             Some(Mapping::Affine) => {
                 let [u, v] = planes.affine.starts(s, lane, (j, parts.seed), [seed, number]);
                 let [du, dv] = planes.affine.steps(s, lane);
-                coordinates = [u, v, du, dv];
+                for (i, coordinate) in [u, v, du, dv].into_iter().enumerate() {
+                    coordinates.put(s, record, i, coordinate);
+                }
             }
             Some(_) => {
-                let [u, v, d] = planes.perspective.starts(s, lane, j, parts.seed);
-                sums = Starts8([s.bits(u), s.bits(v), s.bits(d)]);
+                for (i, sum) in planes.perspective.starts(s, lane, j, parts.seed).into_iter().enumerate() {
+                    sums.put(s, record, i, s.bits(sum));
+                }
             }
             None => {}
         }
-        (paint, Marks8 { numbers, count: 2 + *slots, texture: *texture, coordinates, sums })
-    }
-
-    #[inline(always)]
-    fn append<S: Lanes8>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, Marks8<S, MAPPED>>,
-        dz: Option<DepthSteps<S>>,
-    ) {
-        let places = list.append(s, spans, dz);
-        let Marks8 { numbers, texture, coordinates, sums, .. } = spans.columns;
-        self.listed.numbers.put(s, places, numbers, 2 + self.listed.wanted.slots);
-        match mapping::<MAPPED>(texture) {
-            Some(Mapping::Affine) => self.listed.coordinates.put(s, places, coordinates, COORDINATES),
-            Some(_) => self.listed.sums.put(s, places, sums),
-            None => {}
-        }
+        // Below 256.
+        s.add_i32(s.splat_i32(record as i32), s.load_i32(&lanes::NUMBERS))
     }
 
     #[inline(always)]
@@ -676,6 +595,23 @@ impl<const MAPPED: u8> Shades8 for EffectSpans<'_, MAPPED> {
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
         self.draw_spans(list, target);
     }
+}
+
+/// A value at the first pixels of parts of rows `j`, with the step in the upper half. If it is not reseeded there, it is
+/// exact at the first pixel of its row.
+#[inline(always)]
+fn value_in<S: Lanes8>(
+    s: S,
+    lane: impl Lane<S>,
+    planes: (&ValuePlanes8, &Floats),
+    j: S::F64,
+    parts: &Parts<S>,
+    reseeds: bool,
+) -> S::I32 {
+    if reseeds {
+        return value_of(s, lane, planes, j, parts.seed);
+    }
+    advance(s, value_of(s, lane, planes, j, parts.row), s.sub_i32(s.low_bits(parts.seed), s.low_bits(parts.row)))
 }
 
 /// A value of the corners of up to eight triangles; 0 in lanes without a triangle.

@@ -76,7 +76,7 @@ mod texture;
 use alloc::vec::Vec;
 
 pub use self::batch::{EffectBatch, EffectFace};
-use self::listing::{Columns, EffectSpans, Faces, ListedFaces, mapped};
+use self::listing::{EffectSpans, Faces, ListedFaces, SpanData};
 pub use self::pipeline::{Limits, Mix, PixelLighting, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
@@ -88,10 +88,9 @@ use super::reference::cover::Row;
 use super::setup::FrameLayout;
 use super::spans::{Drawn, Place, draw_triangles};
 use super::triangle::Raster;
-use crate::fixed::{HAS_F64, IS_COMPACT};
+use crate::fixed::HAS_F64;
 pub use crate::lanes::{Lanes, Points};
-use crate::mapping::Mapping;
-use crate::simd::{BASELINE, Lanes8, compiled_for_each_level};
+use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::list::{Span, SpanList, Target, Written};
 pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
@@ -101,7 +100,7 @@ use crate::span::{Kernel, lookup, lookup_row};
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EffectScratch {
     /// A list of spans with the stages' data about them; empty until it is needed.
-    lists: Vec<(SpanList, Columns)>,
+    lists: Vec<(SpanList, SpanData)>,
     buffers: Buffers,
 }
 
@@ -136,7 +135,7 @@ impl EffectScratch {
     #[inline]
     fn make_room(&mut self) {
         if self.lists.is_empty() {
-            self.lists.push((SpanList::NONE, Columns::NONE));
+            self.lists.push((SpanList::NONE, SpanData::NONE));
             self.buffers.make_room();
         }
     }
@@ -152,10 +151,10 @@ impl EffectScratch {
         drawn: &mut DrawStats,
     ) {
         self.make_room();
-        let Some((list, columns)) = self.lists.first_mut() else { return };
+        let Some((list, data)) = self.lists.first_mut() else { return };
         list.begin((pixels.len(), 0), None);
         let mut target = Target { pixels, cells: None, kernel };
-        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, &mut self.buffers);
+        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, &mut self.buffers);
         spans.walk(k, 0);
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
@@ -262,41 +261,25 @@ fn write_by<S: Lanes8>(
 }
 
 compiled_for_each_level! {
-    /// Draws triangles with effects; if there are cells, only their nearer pixels. With wide vectors the compiler knows
-    /// the mapping.
+    /// Draws triangles with effects; if there are cells, only their nearer pixels.
     #[inline(never)]
-    fn draw_effects[const MAPPED: u8][MAPPED](
+    fn draw_effects[][](
         of: Drawn<'_>,
-        effects: (EffectSpans<'_>, &mut SpanList),
+        effects: (&mut EffectSpans<'_>, &mut SpanList),
         place: Place,
         target: &mut Target<'_>,
     ) -> DrawStats = draw_effects_by;
 }
 
 #[inline(always)]
-fn draw_effects_by<S: Lanes8, const MAPPED: u8>(
+fn draw_effects_by<S: Lanes8>(
     s: S,
     of: Drawn<'_>,
-    (spans, list): (EffectSpans<'_>, &mut SpanList),
+    (spans, list): (&mut EffectSpans<'_>, &mut SpanList),
     place: Place,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    // Columns do not fit into registers of 128 bits anyway, and each copy takes seconds to compile.
-    if const { align_of::<S::F64>() <= 16 } {
-        return draw_at_baseline(of, (spans, list), place, target);
-    }
-    draw_triangles::<S, _, true>(s, of, place, target, &mut spans.with_mapping::<MAPPED>(), list)
-}
-
-/// Draws triangles with effects, using only instructions that every processor of the target has.
-#[inline(never)]
-fn draw_at_baseline(
-    of: Drawn<'_>,
-    (mut spans, list): (EffectSpans<'_>, &mut SpanList),
-    place: Place,
-    target: &mut Target<'_>,
-) -> DrawStats {
-    draw_triangles::<_, _, true>(BASELINE, of, place, target, &mut spans, list)
+    draw_triangles::<S, _, true>(s, of, place, target, spans, list)
 }
 
 impl<D: Cell> Raster<'_, D> {
@@ -311,7 +294,7 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         scratch.make_room();
         let EffectScratch { lists, buffers } = scratch;
-        let Some((list, columns)) = lists.first_mut() else { return DrawStats::default() };
+        let Some((list, data)) = lists.first_mut() else { return DrawStats::default() };
         let (width, rows, clip, kernel) = (self.frame.width(), self.frame.rows(), self.clip, self.kernel);
         let (_, pitch) = self.frame.pixels_mut();
         let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
@@ -325,23 +308,15 @@ impl<D: Cell> Raster<'_, D> {
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             if together > 0 {
                 let picks = picks.range(first, first + together);
-                let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
+                let spans = &mut EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
                 let of = Drawn { triangles, picks, in_pieces: true };
                 let (pixels, _) = self.frame.pixels_mut();
                 let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
-                let (level, place) = (kernel.simd_level(), (layout, clip));
-                drawn += match spans.mapping() {
-                    _ if IS_COMPACT => draw_effects::<{ mapped::ANY }>(level, of, (spans, list), place, target),
-                    None => draw_effects::<{ mapped::NONE }>(level, of, (spans, list), place, target),
-                    Some(Mapping::Affine) => {
-                        draw_effects::<{ mapped::AFFINE }>(level, of, (spans, list), place, target)
-                    }
-                    Some(_) => draw_effects::<{ mapped::ON_FACE }>(level, of, (spans, list), place, target),
-                };
+                drawn += draw_effects(kernel.simd_level(), of, (spans, list), (layout, clip), target);
                 first += together;
                 continue;
             }
-            let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, columns, buffers);
+            let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
             drawn += self.walk((&mut spans, list), first);
             first += 1;
         }

@@ -2,7 +2,7 @@
 
 use alloc::vec::Vec;
 
-use super::listing::{Columns, EffectSpans, Faces, Marks8, mapped};
+use super::listing::{EffectSpans, Faces, SpanData};
 use super::spans::{Span, Spans};
 use super::texture::exact_level;
 use super::{Buffers, PixelPipeline};
@@ -11,12 +11,12 @@ use crate::raster::columns::{Picks, Triangles};
 use crate::raster::frame::Rect;
 use crate::raster::reference::texture::AffineLevel;
 use crate::raster::rows::{Lane, Parts, RowEnds, Shades8};
-use crate::raster::setup::{Basis, Corners8, FrameLayout, TriangleSetup8};
+use crate::raster::setup::{Corners8, FrameLayout, TriangleSetup8};
 use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
-use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
+use crate::span::list::{SpanList, Target};
 use crate::span::texture::PerspectiveSums;
 
 /// A span and the starts of its values.
@@ -53,10 +53,13 @@ struct Recorder<'a> {
 
 impl Shades8 for Recorder<'_> {
     const IS_LINEAR: bool = false;
-    type Columns<S: Lanes8> = Marks8<S, { mapped::ANY }>;
 
     fn is_full(&self) -> bool {
         self.spans.is_full()
+    }
+
+    fn has_room(&self, rows: usize) -> bool {
+        self.spans.has_room(rows)
     }
 
     fn begin(&mut self, first: usize) {
@@ -64,31 +67,20 @@ impl Shades8 for Recorder<'_> {
     }
 
     #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
-        self.spans.set_up(s, basis, corners, setup);
+    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
+        self.spans.set_up(s, corners, setup, of);
     }
 
     #[inline(always)]
     fn fill_of<S: Lanes8>(
-        &self,
+        &mut self,
         s: S,
         lane: impl Lane<S>,
         setup: &TriangleSetup8,
         ends: &RowEnds<S>,
         parts: &Parts<S>,
-    ) -> (S::I32, Marks8<S, { mapped::ANY }>) {
+    ) -> S::I32 {
         self.spans.fill_of(s, lane, setup, ends, parts)
-    }
-
-    #[inline(always)]
-    fn append<S: Lanes8>(
-        &mut self,
-        s: S,
-        list: &mut SpanList,
-        spans: &Spans8<S, Marks8<S, { mapped::ANY }>>,
-        dz: Option<DepthSteps<S>>,
-    ) {
-        self.spans.append(s, list, spans, dz);
     }
 
     fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
@@ -101,7 +93,7 @@ impl Shades8 for Recorder<'_> {
             let spans = Spans::of(listed, list, first, &mut offsets);
             for i in 0..spans.count() {
                 self.recorded.push(Recorded {
-                    pick: listed.batches.first + listed.data().mark(first + i).face(),
+                    pick: listed.batches.first + spans.face(i),
                     span: spans.span(i),
                     affine: spans.affine_start(i),
                     perspective: spans.sums(i),
@@ -116,7 +108,7 @@ impl Shades8 for Recorder<'_> {
             }
             first += spans.count();
         }
-        list.clear(0);
+        self.spans.clear(list, 0);
     }
 }
 
@@ -140,8 +132,8 @@ pub(super) fn record(
     picks: Picks<'_>,
     pipeline: &PixelPipeline<'_>,
 ) -> Vec<Recorded> {
-    let (mut columns, mut buffers) = (Columns::NONE, Buffers::default());
-    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut columns, &mut buffers);
+    let (mut data, mut buffers) = (SpanData::NONE, Buffers::default());
+    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut data, &mut buffers);
     let mut recorder = Recorder { spans, recorded: Vec::new() };
     let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
     record_at_level(kernel.simd_level(), Drawn { triangles, picks, in_pieces: true }, &mut recorder, clip);

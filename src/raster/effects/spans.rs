@@ -29,7 +29,7 @@ pub(super) const ROOM: usize = PIXELS + LANES;
 /// Spans that pass through the stages together; their pixels are concatenated.
 pub(super) struct Spans<'a> {
     listed: &'a ListedFaces<'a>,
-    data: SpanData<'a>,
+    data: &'a SpanData,
     list: &'a SpanList,
     depths: SpanDepths<'a>,
     /// Index of the first in the list.
@@ -101,7 +101,7 @@ impl<'a> Spans<'a> {
         offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
-            end += list.span(k).length + listed.data().mark(k).skipped();
+            end += list.span(k).length + listed.data.mark(list.span(k).paint as usize).skipped();
             if end as usize > PIXELS {
                 break;
             }
@@ -109,7 +109,7 @@ impl<'a> Spans<'a> {
             // No more than the list has.
             offsets[count] = end;
         }
-        Self { listed, data: listed.data(), list, depths: list.depths(), first, count, pixels: offsets }
+        Self { listed, data: &*listed.data, list, depths: list.depths(), first, count, pixels: offsets }
     }
 
     /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
@@ -117,7 +117,7 @@ impl<'a> Spans<'a> {
     pub(super) fn all(listed: &'a ListedFaces<'_>, list: &'a SpanList) -> Self {
         Self {
             listed,
-            data: listed.data(),
+            data: &*listed.data,
             list,
             depths: list.depths(),
             first: 0,
@@ -137,10 +137,28 @@ impl<'a> Spans<'a> {
         self.pixels[self.count] as usize
     }
 
+    /// The index of the record of span `i`.
+    #[inline(always)]
+    fn record(&self, i: usize) -> usize {
+        self.list.span(self.first + i).paint as usize
+    }
+
+    /// The mark of span `i`.
+    #[inline(always)]
+    fn mark(&self, i: usize) -> Mark {
+        self.data.mark(self.record(i))
+    }
+
+    /// The face of span `i`, among those whose planes are stored.
+    #[inline(always)]
+    pub(super) fn face(&self, i: usize) -> usize {
+        self.mark(i).face()
+    }
+
     /// Span `i` of these.
     #[inline(always)]
     pub(super) fn span(&self, i: usize) -> Span {
-        let mark = self.data.mark(self.first + i);
+        let mark = self.mark(i);
         let (planes, lane) = self.data.planes(mark.face());
         let [column, row] = mark.place();
         let len = (self.list.span(self.first + i).length + mark.skipped()) as usize;
@@ -164,10 +182,8 @@ impl<'a> Spans<'a> {
     /// The index after the last span of the face that span `i` belongs to.
     #[inline(always)]
     pub(super) fn end_of_face(&self, i: usize) -> usize {
-        let face = |i: usize| self.data.mark(self.first + i).face();
-        let of = face(i);
-        let mut end = i + 1;
-        while end < self.count && face(end) == of {
+        let (of, mut end) = (self.face(i), i + 1);
+        while end < self.count && self.face(end) == of {
             end += 1;
         }
         end
@@ -192,13 +208,13 @@ impl<'a> Spans<'a> {
 
     /// The texture coordinates of the face of span `i`, linear on it, and their levels, by their definitions.
     pub(super) fn exact_texture(&self, i: usize) -> (PerspectiveTexture, Option<LevelPlane>) {
-        self.listed.exact_texture(self.data.mark(self.first + i).face())
+        self.listed.exact_texture(self.face(i))
     }
 
     /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn paint(&self, i: usize) -> u32 {
-        self.list.span(self.first + i).paint
+        self.data.shade(self.record(i))
     }
 
     /// The linear values of span `i` that this tint reads.
@@ -211,33 +227,33 @@ impl<'a> Spans<'a> {
     /// The start of a value of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
-        self.data.value(self.first + i, value.slot())
+        self.data.value(self.record(i), value.slot())
     }
 
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
-        self.data.affine(self.first + i)
+        self.data.affine(self.record(i))
     }
 
     /// The level of the face of span `i`, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_level(&self, i: usize) -> AffineLevel {
-        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
+        let (planes, lane) = self.data.planes(self.face(i));
         planes.affine.level(lane)
     }
 
     /// The sums along span `i`, where the texture is linear on the face.
     #[inline(always)]
     pub(super) fn sums(&self, i: usize) -> PerspectiveSums<f64> {
-        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
-        planes.perspective.sums(lane, self.data.sums(self.first + i))
+        let (planes, lane) = self.data.planes(self.face(i));
+        planes.perspective.sums(lane, self.data.sums(self.record(i)))
     }
 
     /// The level of the image in the face of span `i`, whose texture is linear on it, if it has only one.
     #[inline(always)]
     pub(super) fn single_level(&self, i: usize) -> Option<u32> {
-        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
+        let (planes, lane) = self.data.planes(self.face(i));
         planes.perspective.single_level(lane)
     }
 
@@ -245,8 +261,8 @@ impl<'a> Spans<'a> {
     /// cannot decide.
     #[inline(always)]
     pub(super) fn levels<S: Lanes8>(&self, s: S, i: usize, k: S::I32, last: u32) -> S::I32 {
-        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
-        planes.perspective.levels(s, lane, self.data.sums(self.first + i), k, last)
+        let (planes, lane) = self.data.planes(self.face(i));
+        planes.perspective.levels(s, lane, self.data.sums(self.record(i)), k, last)
     }
 
     /// The level at pixel `k` of span `i`, if an estimate decides it.
@@ -259,14 +275,14 @@ impl<'a> Spans<'a> {
     /// The row's last pixel inside the frame, from the first one of span `i`.
     #[inline(always)]
     pub(super) fn last(&self, i: usize) -> i32 {
-        self.data.mark(self.first + i).last()
+        self.mark(i).last()
     }
 
     /// [`sums`](Self::sums) in f32, if the quotients along span `i` may be taken in f32.
     #[inline(always)]
     pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
-        let (planes, lane) = self.data.planes(self.data.mark(self.first + i).face());
-        planes.perspective.singles(lane, || self.data.sums(self.first + i))
+        let (planes, lane) = self.data.planes(self.face(i));
+        planes.perspective.singles(lane, || self.data.sums(self.record(i)))
     }
 
     /// Runs one stage: for every face, `plane` sets up its values from its corners, top to bottom;
@@ -307,14 +323,13 @@ impl<'a> Spans<'a> {
     pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
         let span = self.list.span(k);
-        (span.at as usize, span.length as usize, self.data.mark(k).skipped())
+        (span.at as usize, span.length as usize, self.data.mark(span.paint as usize).skipped())
     }
 
     /// Where the drawn pixels of span `i` are among those of all spans, and the span.
     #[inline(always)]
     pub(super) fn drawn(&self, i: usize) -> (usize, list::Span) {
-        let k = self.first + i;
-        ((self.pixels[i] + self.data.mark(k).skipped()) as usize, self.list.span(k))
+        ((self.pixels[i] + self.mark(i).skipped()) as usize, self.list.span(self.first + i))
     }
 
     /// The depth of the first drawn pixel of span `i`.

@@ -768,7 +768,7 @@ mod tests {
             };
             let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
             let last = stage.levels.expect("it has some").last();
-            let (mut memory, mut buffers) = (listing::Columns::NONE, Buffers::default());
+            let (mut memory, mut buffers) = (listing::SpanData::NONE, Buffers::default());
             let faces = Faces { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
             let mut of_face = EffectSpans::new(faces, &pipeline, &mut memory, &mut buffers);
             let (mut rows, clip) = (Vec::new(), Rect { x0: 0, y0: 0, x1: 320, y1: 200 });

@@ -129,7 +129,7 @@ pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32],
         return 0;
     }
     // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
-    unsafe { each_nearer::<false>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, |_, _| (0, 0)) }
+    unsafe { each_nearer::<false>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, |_| (0, 0)) }
 }
 
 /// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
@@ -139,7 +139,7 @@ pub(crate) fn fill_spans_16_16(
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: &SpanList,
-    shades: impl Fn(usize, u32) -> (u32, u32),
+    shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
     if !spans.are_inside(pixels) || !spans.are_inside_cells(cells) {
         return 0;
@@ -157,7 +157,7 @@ unsafe fn each_nearer<const FIXED16: bool>(
     pixels: *mut u8,
     cells: *mut u32,
     spans: &SpanList,
-    shades: impl Fn(usize, u32) -> (u32, u32),
+    shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
     let lanes = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     let numbers = _mm512_setr_epi64(0, 1, 2, 3, 4, 5, 6, 7);
@@ -177,7 +177,7 @@ unsafe fn each_nearer<const FIXED16: bool>(
         let mut z0 = _mm512_add_epi64(_mm512_mullo_epi64(steps, numbers), _mm512_set1_epi64(z));
         let (mut fixed, mut fixed_step) = (_mm512_setzero_si512(), _mm512_setzero_si512());
         if FIXED16 {
-            let (start, step) = shades(k, paint);
+            let (start, step) = shades(paint);
             fixed_step = _mm512_set1_epi32(step.cast_signed());
             let start = _mm512_set1_epi32(start.cast_signed());
             fixed = _mm512_add_epi32(_mm512_mullo_epi32(fixed_step, lanes), start);

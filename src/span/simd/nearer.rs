@@ -23,7 +23,7 @@ const FOUR: usize = 4;
 /// Fills every span of a list. Returns the number of pixels written.
 pub(crate) fn fill_spans(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill(avx2, pixels, cells, spans, |_, _| Own::Linear) }
+    unsafe { fill(avx2, pixels, cells, spans, |_| Own::Linear) }
 }
 
 /// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
@@ -33,7 +33,7 @@ pub(crate) fn fill_spans_16_16(
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: &SpanList,
-    shades: impl Fn(usize, u32) -> (u32, u32),
+    shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
     unsafe { fill_16_16(avx2, pixels, cells, spans, shades) }
@@ -45,10 +45,10 @@ fn fill_16_16(
     pixels: &mut [u8],
     cells: &mut [u32],
     spans: &SpanList,
-    shades: impl Fn(usize, u32) -> (u32, u32),
+    shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
-    fill(avx2, pixels, cells, spans, |number, span| {
-        let (start, step) = shades(number, span.paint);
+    fill(avx2, pixels, cells, spans, |span| {
+        let (start, step) = shades(span.paint);
         Own::Fixed16(start, step)
     })
 }
@@ -67,7 +67,7 @@ enum Own {
 /// A span that does not lie inside the pixels and cells is not drawn. (This one function fills a whole list: a function
 /// that fills one span would be too large to be inlined in the loop, and is a quarter slower.)
 #[target_feature(enable = "avx2")]
-fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(usize, &Span) -> Own) -> u32 {
+fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(&Span) -> Own) -> u32 {
     // Pixels of all iterations, four for each span and these; and per lane those that were not written, as a negative
     // count. Sums are modulo 2³².
     let mut more = 0_u32;
@@ -85,7 +85,7 @@ fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own:
                     && let Some(near) = cells.get_mut(cell..cell + FOUR).and_then(|cells| cells.first_chunk_mut())
                 {
                     let (span, depth) = (spans.span(number), spans.depth(number));
-                    let stay = four(avx2, (row, near), span, depth, own(number, &span));
+                    let stay = four(avx2, (row, near), span, depth, own(&span));
                     stayed = _mm256_add_epi32(stayed, _mm256_zextsi128_si256(stay));
                     number += 1;
                     continue;
@@ -96,7 +96,7 @@ fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own:
                     && let Some(near) = cells.get_mut(cell..cell + EIGHT)
                 {
                     let (span, depth) = (spans.span(number), spans.depth(number));
-                    stayed = _mm256_add_epi32(stayed, eights(row, near, span, depth, own(number, &span)));
+                    stayed = _mm256_add_epi32(stayed, eights(row, near, span, depth, own(&span)));
                     more = more.wrapping_add((EIGHT - FOUR) as u32);
                     number += 1;
                     continue;
@@ -109,7 +109,7 @@ fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own:
         }
         let (span, depth) = (spans.span(number), spans.depth(number));
         let (at, cell, length) = (span.at as usize, depth.cell as usize, span.length as usize);
-        let own_shades = own(number, &span);
+        let own_shades = own(&span);
         if let Own::Linear = own_shades
             && length > EIGHT
         {
