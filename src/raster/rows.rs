@@ -89,10 +89,10 @@ pub(super) struct Parts<S: Lanes8> {
 
 /// A shade, with its step in the upper half, advanced by this many pixels.
 #[inline(always)]
-pub(super) fn advance<S: Lanes8>(s: S, paint: S::I32, pixels: S::I32) -> S::I32 {
-    let step = s.and_i32(paint, s.splat_i32(!0xFFFF));
+pub(super) fn advance<S: Lanes8>(s: S, value: S::I32, pixels: S::I32) -> S::I32 {
+    let step = s.and_i32(value, s.splat_i32(!0xFFFF));
     // Both in upper halves, like the step.
-    let shade = s.add_i32(s.shl_i32(paint, 16), s.mul_i32(step, pixels));
+    let shade = s.add_i32(s.shl_i32(value, 16), s.mul_i32(step, pixels));
     s.or_i32(s.and_i32(s.shr_i32(shade, 16), s.splat_i32(0xFFFF)), step)
 }
 
@@ -158,8 +158,6 @@ impl Batches {
 pub(super) trait Shades8 {
     /// True if a shade and its step are enough to fill a span.
     const IS_LINEAR: bool;
-    /// True if each triangle has a single shade, so that no planes of linear shades are needed.
-    const IS_FLAT: bool = false;
 
     /// Returns whether spans have to be drawn before eight more triangles are set up.
     fn is_full(&self) -> bool;
@@ -191,20 +189,21 @@ pub(super) trait Shades8 {
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
 }
 
-/// Linear shades in 8.8; with `FLAT`, a single shade per triangle, which needs no plane: all of its
-/// rows start with it.
-pub(super) struct Linear<const FLAT: bool> {
-    /// With `FLAT` the shades, with the half that rounds them; the steps, in the upper halves, are 0.
-    paint: Ints,
+/// Linear shades in 8.8, or a single shade per triangle, which needs no plane: all of its rows start with it.
+pub(super) struct Linear {
+    is_flat: bool,
+    /// Single shades, with the half that rounds them; the steps, in the upper halves, are 0.
+    shades: Ints,
 }
 
-impl<const FLAT: bool> Linear<FLAT> {
-    pub(super) const NONE: Self = Self { paint: [0; LANES] };
+impl Linear {
+    pub(super) const fn new(is_flat: bool) -> Self {
+        Self { is_flat, shades: [0; LANES] }
+    }
 }
 
-impl<const FLAT: bool> Shades8 for Linear<FLAT> {
+impl Shades8 for Linear {
     const IS_LINEAR: bool = true;
-    const IS_FLAT: bool = FLAT;
 
     #[inline(always)]
     fn is_full(&self) -> bool {
@@ -225,10 +224,10 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
             s,
             #[inline(always)]
             || {
-                setup.set_up(s, corners, of, !FLAT);
-                if FLAT {
+                setup.set_up(s, corners, of, !self.is_flat);
+                if self.is_flat {
                     // At most 0xFF80.
-                    s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.paint);
+                    s.store_i32(s.add_i32(s.load_i32(&corners.shade[0]), s.splat_i32(128)), &mut self.shades);
                 }
             },
         );
@@ -243,7 +242,7 @@ impl<const FLAT: bool> Shades8 for Linear<FLAT> {
         ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> S::I32 {
-        if FLAT { lane.load_i32(s, &self.paint) } else { ends.paint(s, lane, setup, parts.seed) }
+        if self.is_flat { lane.load_i32(s, &self.shades) } else { ends.shade(s, lane, setup, parts.seed) }
     }
 
     #[inline(always)]
@@ -282,7 +281,7 @@ impl<S: Lanes8> RowEnds<S> {
 
     /// The shade at these columns, with the step in the upper half.
     #[inline(always)]
-    pub(super) fn paint(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
+    pub(super) fn shade(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
         value_of(s, lane, (&setup.shade, &setup.inverse), self.j, columns)
     }
 }
@@ -374,12 +373,12 @@ impl<S: Lanes8> RowCursor8<S> {
             self.z = s.add_i64(self.z, s.load_i64(&setup.z_per_row));
         }
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let paint = shades.fill_of(s, lane, setup, &ends, &parts);
+        let fill = shades.fill_of(s, lane, setup, &ends, &parts);
         let spans = Spans8 {
             at: s.add_i32(self.at, left),
             cell: s.add_i32(self.cell, left),
             length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
-            paint,
+            fill,
             z,
         };
         self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
@@ -397,8 +396,8 @@ const fn are_arrays<S: Lanes8>() -> bool {
     align_of::<S::F64>() < 16
 }
 
-/// Returns whether each row is computed and listed by a call: in plain arrays, and for spans with many columns in
-/// narrow vectors, which take long to compile, too.
+/// Returns whether each row is computed and listed by a call: in plain arrays, and for records in narrow vectors, which
+/// would otherwise be spilled.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
@@ -524,8 +523,8 @@ impl<S: Lanes8> EightRows<S> {
     fn spans<P: Shades8>(&self, s: S, setup: &TriangleSetup8, shades: &mut P, i: usize) -> Spans8<S> {
         let Self { ends, at, cell, length, z } = self;
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
-        let paint = shades.fill_of(s, OneTriangle(i), setup, ends, &parts);
-        Spans8 { at: *at, cell: *cell, length: *length, paint, z: *z }
+        let fill = shades.fill_of(s, OneTriangle(i), setup, ends, &parts);
+        Spans8 { at: *at, cell: *cell, length: *length, fill, z: *z }
     }
 }
 
@@ -586,10 +585,10 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 right = s.min(right, side(clip.x1));
             }
             let parts = Parts { row: row_origin, end: last, seed: left, start };
-            let mut paint = shades.fill_of(s, lane, setup, ends, &parts);
+            let mut fill = shades.fill_of(s, lane, setup, ends, &parts);
             if P::IS_LINEAR && clip.is_some() {
                 // A piece that begins left of the rectangle continues from its start.
-                paint = advance(s, paint, s.sub_i32(s.low_bits(start), s.low_bits(left)));
+                fill = advance(s, fill, s.sub_i32(s.low_bits(start), s.low_bits(left)));
             }
             let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
             let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
@@ -597,7 +596,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 at: s.add_i32(rows.at, moved),
                 cell: s.add_i32(rows.cell, moved),
                 length: s.select_i32(is_row, length, s.splat_i32(0)),
-                paint,
+                fill,
                 z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
             }
         };

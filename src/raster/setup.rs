@@ -74,18 +74,14 @@ impl Corners8 {
     pub(super) const NONE: Self =
         Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
 
-    /// Reads the first eight of these triangles, with depths only if `DEPTHS`. With `FLAT`, each has a single shade.
+    /// Reads the first eight of these triangles, with depths only if `DEPTHS`.
     #[inline(always)]
-    pub(super) fn gather<const DEPTHS: bool, const FLAT: bool>(
-        &mut self,
-        triangles: &Triangles<'_>,
-        picks: &Picks<'_>,
-    ) {
+    pub(super) fn gather<const DEPTHS: bool>(&mut self, triangles: &Triangles<'_>, picks: &Picks<'_>) {
         let Columns { at, depth, shade, .. } = triangles.columns;
         // Sliced to one length, so that a vertex's index is bounds-checked once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
-        self.are_flat = FLAT || !picks.flat.is_empty();
+        self.are_flat = !picks.flat.is_empty();
         if let Some(first) = triangles.consecutive(picks)
             && !self.are_flat
             && self.load(triangles, first).is_some()

@@ -282,7 +282,7 @@ impl<'a> Shaded8<'a> {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
                 let span = list.span(k);
-                let record = span.paint as usize;
+                let record = span.fill as usize;
                 let face = self.numbers.of(record, 0);
                 let sums = self.sums.of(record).map(|bits| f64::from_bits(bits.cast_unsigned()));
                 let bytes = self.bytes.of_mut(k - first);

@@ -32,7 +32,7 @@ use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8};
 use super::triangle::Raster;
 use super::vertex::Vertex;
-use crate::fixed::{HAS_F64, IS_COMPACT};
+use crate::fixed::HAS_F64;
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
@@ -161,9 +161,9 @@ impl<D: Cell> Raster<'_, D> {
                     list.draw(target);
                 }
                 let at = [layout.pitch, layout.width].map(|row| down * row as usize + columns.start);
-                let paint = u32::from(start) | u32::from(shade.step()) << 16;
+                let fill = u32::from(start) | u32::from(shade.step()) << 16;
                 let z = plane.map_or([0; 2], |plane| [plane.fixed_at(columns.start as i32, row.y), plane.step()]);
-                list.push(at, columns.len(), paint, z.map(|z| z << 8));
+                list.push(at, columns.len(), fill, z.map(|z| z << 8));
             });
         });
         list.draw(target);
@@ -190,19 +190,16 @@ pub(super) type Place = (FrameLayout, Rect);
 /// in every crate that draws.
 #[inline(never)]
 fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
-    match (!of.picks.flat.is_empty() && !IS_COMPACT, target.cells.is_some()) {
-        (false, false) => draw_at_level::<false, false>(level, of, place, target, list),
-        (false, true) => draw_at_level::<false, true>(level, of, place, target, list),
-        (true, false) => draw_at_level::<true, false>(level, of, place, target, list),
-        (true, true) => draw_at_level::<true, true>(level, of, place, target, list),
+    match target.cells.is_some() {
+        false => draw_at_level::<false>(level, of, place, target, list),
+        true => draw_at_level::<true>(level, of, place, target, list),
     }
 }
 
 compiled_for_each_level! {
-    /// Draws triangles: with `FLAT`, of a single shade each; with `DEPTHS`, only where they are
-    /// nearer than the cells.
+    /// Draws triangles; with `DEPTHS`, only where they are nearer than the cells.
     #[inline(never)]
-    fn draw_at_level[const FLAT: bool, const DEPTHS: bool][FLAT, DEPTHS](
+    fn draw_at_level[const DEPTHS: bool][DEPTHS](
         of: Drawn<'_>,
         place: Place,
         target: &mut Target<'_>,
@@ -211,14 +208,14 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn draw_by<S: Lanes8, const FLAT: bool, const DEPTHS: bool>(
+fn draw_by<S: Lanes8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
     place: Place,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    draw_triangles::<S, _, DEPTHS>(s, of, place, target, &mut { Linear::<FLAT>::NONE }, list)
+    draw_triangles::<S, _, DEPTHS>(s, of, place, target, &mut Linear::new(!of.picks.flat.is_empty()), list)
 }
 
 compiled_for_each_level! {
@@ -247,12 +244,8 @@ fn draw_shaded_by<S: Lanes8>(
 
 /// [`Corners8::gather`], not compiled for each level: it is called once for many triangles.
 #[inline(never)]
-fn gather_first<const DEPTHS: bool, const FLAT: bool>(
-    corners: &mut Corners8,
-    triangles: &Triangles<'_>,
-    picks: &Picks<'_>,
-) {
-    corners.gather::<DEPTHS, FLAT>(triangles, picks);
+fn gather_first<const DEPTHS: bool>(corners: &mut Corners8, triangles: &Triangles<'_>, picks: &Picks<'_>) {
+    corners.gather::<DEPTHS>(triangles, picks);
 }
 
 /// Draws triangles; if there are cells, only where they are nearer. `DEPTHS` may be false if there are none.
@@ -276,11 +269,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let mut corners = Corners8::NONE;
     let (triangles, picks) = (of.triangles, of.picks);
     let count = picks.picks.len();
-    if P::IS_FLAT {
-        gather_first::<DEPTHS, true>(&mut corners, triangles, &picks);
-    } else {
-        gather_first::<DEPTHS, false>(&mut corners, triangles, &picks);
-    }
+    gather_first::<DEPTHS>(&mut corners, triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
             shades.draw::<S, DEPTHS>(s, list, target);
@@ -290,11 +279,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
         let next = picks.range(count.min((number + 1) * LANES), count);
-        if P::IS_FLAT {
-            corners.gather::<DEPTHS, true>(triangles, &next);
-        } else {
-            corners.gather::<DEPTHS, false>(triangles, &next);
-        }
+        corners.gather::<DEPTHS>(triangles, &next);
         // Only for the last triangles: filling calls the C library.
         if eight.len() < LANES {
             setup.rows[eight.len()..].fill(0);

@@ -40,8 +40,8 @@ pub(crate) struct SpanList {
     /// Offsets of the first cells, if there are depths and these offsets differ from those of the pixels.
     cell: Numbers,
     length: Numbers,
-    /// The shade, with the step in the upper half.
-    paint: Numbers,
+    /// The shade, with the step in the upper half; or the index of a [record](Records).
+    fill: Numbers,
     /// Depths, with the integer part in the upper half, modulo 2⁶⁴.
     z: Depths,
     dz: Depths,
@@ -71,8 +71,8 @@ pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) at: S::I32,
     pub(crate) cell: S::I32,
     pub(crate) length: S::I32,
-    /// The shade, with the step in the upper half.
-    pub(crate) paint: S::I32,
+    /// As in the list.
+    pub(crate) fill: S::I32,
     /// Depths, as in the list.
     pub(crate) z: S::I64,
 }
@@ -96,11 +96,11 @@ impl<S: Lanes8> Spans8<S> {
             [at, more_at]
         };
         let [length, more_length] = s.interleave_i32(self.length, other.length);
-        let [paint, more_paint] = s.interleave_i32(self.paint, other.paint);
+        let [fill, more_fill] = s.interleave_i32(self.fill, other.fill);
         let [z, more_z] = if has_depths { s.interleave_i64(self.z, other.z) } else { [self.z, other.z] };
         [
-            Self { at, cell, length, paint, z },
-            Self { at: more_at, cell: more_cell, length: more_length, paint: more_paint, z: more_z },
+            Self { at, cell, length, fill, z },
+            Self { at: more_at, cell: more_cell, length: more_length, fill: more_fill, z: more_z },
         ]
     }
 }
@@ -118,7 +118,7 @@ impl SpanList {
             at: NUMBERS,
             cell: NUMBERS,
             length: NUMBERS,
-            paint: NUMBERS,
+            fill: NUMBERS,
             z: DEPTHS,
             dz: DEPTHS,
             count: 0,
@@ -202,15 +202,15 @@ impl SpanList {
     /// there is no room for eight, some are dropped.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8>(&mut self, s: S, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {
-        let &Spans8 { at, cell, length, paint, z, .. } = spans;
+        let &Spans8 { at, cell, length, fill, z, .. } = spans;
         let mask = self.inside(s, spans, dz.is_some());
         let covered = s.select_i32(mask, length, s.splat_i32(0));
         s.store_i32(s.add_i32(s.load_i32(&self.covered.0), covered), &mut self.covered.0);
         let count = self.count.min(CAPACITY);
         s.compress_i32(
             mask,
-            [at, length, paint],
-            [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.paint, count)],
+            [at, length, fill],
+            [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.fill, count)],
         );
         if let Some(dz) = dz {
             if !self.cells_are_pixels() {
@@ -261,14 +261,14 @@ impl SpanList {
 
     /// Appends a span, given the offsets of its first pixel and cell, with its depth and the change per pixel, if it
     /// lies inside and there is room. Returns whether it was appended.
-    pub(crate) fn push(&mut self, [at, cell]: [usize; 2], length: usize, paint: u32, [z, dz]: [i64; 2]) -> bool {
+    pub(crate) fn push(&mut self, [at, cell]: [usize; 2], length: usize, fill: u32, [z, dz]: [i64; 2]) -> bool {
         let is_inside = |from: usize, most: i32| from.checked_add(length).is_some_and(|end| end <= most as usize);
         if self.count >= CAPACITY || length == 0 || !is_inside(at, self.pixels) || !is_inside(cell, self.cells) {
             return false;
         }
         let k = self.count;
         // Below 2³¹.
-        (self.at[k], self.cell[k], self.length[k], self.paint[k]) = (at as u32, cell as u32, length as u32, paint);
+        (self.at[k], self.cell[k], self.length[k], self.fill[k]) = (at as u32, cell as u32, length as u32, fill);
         (self.z[k], self.dz[k]) = (z, dz);
         self.covered.0[0] = self.covered.0[0].wrapping_add(length as i32);
         self.count += 1;
@@ -299,14 +299,14 @@ impl SpanList {
     #[inline(always)]
     pub(crate) fn span(&self, k: usize) -> Span {
         let k = k.min(CAPACITY);
-        Span { at: self.at[k], length: self.length[k], paint: self.paint[k] }
+        Span { at: self.at[k], length: self.length[k], fill: self.fill[k] }
     }
 
     /// The shade of span `k`, with the step in the upper half, to be broadcast from memory.
     #[cfg(simd_x86_64)]
     #[inline(always)]
-    pub(crate) fn paint(&self, k: usize) -> &u32 {
-        &self.paint[k.min(CAPACITY)]
+    pub(crate) fn fill(&self, k: usize) -> &u32 {
+        &self.fill[k.min(CAPACITY)]
     }
 
     /// The depth of span `k`, which is below [`count`](Self::count).
@@ -331,11 +331,11 @@ impl SpanList {
     /// Fills each span by calling `fill`.
     #[inline(always)]
     pub(super) fn each(&self, pixels: &mut [u8], fill: impl Fn(&mut [u8], u16, u16)) {
-        for Span { at, length, paint } in self.spans() {
+        for Span { at, length, fill: own } in self.spans() {
             // No overflow: both are below 2³¹.
             if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
                 // The shade in the lower half, the step in the upper.
-                fill(row, paint as u16, (paint >> 16) as u16);
+                fill(row, own as u16, (own >> 16) as u16);
             }
         }
     }
@@ -343,38 +343,39 @@ impl SpanList {
     /// Fills each span where it is nearer. Returns the number of pixels written.
     #[inline(never)]
     pub(super) fn each_nearer<D: Cell>(&self, pixels: &mut [u8], cells: &mut [D]) -> u32 {
-        self.each_tested(pixels, cells, |paint, row, cells, [z, dz]| {
+        self.each_tested(pixels, cells, |fill, row, cells, [z, dz]| {
             // The shade in the lower half, the step in the upper.
-            fill_nearer(row, cells, paint as u16, (paint >> 16) as u16, z, dz)
+            fill_nearer(row, cells, fill as u16, (fill >> 16) as u16, z, dz)
         })
     }
 
-    /// Calls a loop that tests depths for each span, with its packed shade and step, its pixels and cells,
+    /// Calls a loop that tests depths for each span, with its fill, its pixels and cells,
     /// its first depth and its depth step. Returns the sum of the loop's results.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,
         pixels: &mut [u8],
         cells: &mut [D],
-        mut fill: impl FnMut(u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
+        mut draw: impl FnMut(u32, &mut [u8], &mut [D], [i64; 2]) -> u32,
     ) -> u32 {
         let mut written = 0;
         for k in 0..self.count() {
-            let (Span { at, length, paint }, SpanDepth { cell, z, dz }) = (self.span(k), self.depth(k));
+            let (Span { at, length, fill }, SpanDepth { cell, z, dz }) = (self.span(k), self.depth(k));
             // No overflow: all are below 2³¹.
             let (at, cell, length) = (at as usize, cell as usize, length as usize);
             if let (Some(row), Some(cells)) = (pixels.get_mut(at..at + length), cells.get_mut(cell..cell + length)) {
-                written += fill(paint, row, cells, [z >> 8, dz >> 8]);
+                written += draw(fill, row, cells, [z >> 8, dz >> 8]);
             }
         }
         written
     }
 }
 
-/// Records of spans that are filled with more than a linear shade. A span's shade is then the index of its record.
+/// The records in use, of spans that are filled with more than a linear shade. The list has the index of a span's
+/// record.
 ///
-/// Eight rows are recorded together, whether or not they have pixels: so nothing but the index has to be compressed,
-/// and sorted by triangle.
+/// Eight rows are recorded together, whether or not they have pixels, so that only the index has to be compressed and
+/// sorted by triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Records {
     /// Number of records in use, a multiple of eight.
@@ -595,8 +596,8 @@ pub(crate) struct Span {
     /// The offset of its first pixel.
     pub(crate) at: u32,
     pub(crate) length: u32,
-    /// The shade, with the step in the upper half.
-    pub(crate) paint: u32,
+    /// As in the list.
+    pub(crate) fill: u32,
 }
 
 /// The depth of a span, with the integer part in the upper half, modulo 2⁶⁴.

@@ -103,11 +103,11 @@ fn write_by<S: Lanes8>(s: S, target: &mut Target<'_>, (span, depth): (Written<'_
 
 fn lanes(spans: &[ListedSpan]) -> Spans8<Portable> {
     let mut eight: Spans8<Portable> =
-        Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], paint: [0; LANES], z: [0; LANES] };
+        Spans8 { at: [0; LANES], cell: [0; LANES], length: [0; LANES], fill: [0; LANES], z: [0; LANES] };
     for (i, span) in spans.iter().enumerate() {
         eight.at[i] = span.at.cast_signed();
         eight.length[i] = span.length.cast_signed();
-        eight.paint[i] = (u32::from(span.shade) | u32::from(span.step) << 16).cast_signed();
+        eight.fill[i] = (u32::from(span.shade) | u32::from(span.step) << 16).cast_signed();
     }
     eight
 }

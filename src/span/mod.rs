@@ -256,7 +256,7 @@ impl Kernel {
     }
 
     /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades`
-    /// returns the first shade and the step of a span, given its index and its packed value. Returns the number of
+    /// returns the first shade and the step of a span, given its fill. Returns the number of
     /// pixels that were nearer.
     #[inline(always)]
     pub(crate) fn fill_spans_16_16(
@@ -275,10 +275,10 @@ impl Kernel {
         }
         match cells {
             None => {
-                for list::Span { at, length, paint } in spans.spans() {
+                for list::Span { at, length, fill } in spans.spans() {
                     // No overflow: both are below 2³¹.
                     if let Some(row) = pixels.get_mut(at as usize..at as usize + length as usize) {
-                        let (start, step) = shades(paint);
+                        let (start, step) = shades(fill);
                         fixed16::fill_16_16(row, start, step);
                     }
                 }
@@ -341,8 +341,8 @@ fn nearer_16_16<D: depth::Cell>(
     spans: &list::SpanList,
     shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
-    spans.each_tested(pixels, cells, |paint, row, cells, [z, dz]| {
-        let (start, step) = shades(paint);
+    spans.each_tested(pixels, cells, |fill, row, cells, [z, dz]| {
+        let (start, step) = shades(fill);
         depth::fill_nearer_16_16(row, cells, [start, step], z, dz)
     })
 }

@@ -317,9 +317,9 @@ pub(crate) mod avx2 {
             && let Some(row) = pixels.get_mut(at..at + 8)
         {
             // shade + k·step, of which bits 8 to 15 count. Read after the check, so that it is broadcast from memory.
-            let paint = _mm256_set1_epi32(spans.span(k).paint.cast_signed());
+            let fill = _mm256_set1_epi32(spans.span(k).fill.cast_signed());
             let numbered = _mm256_setr_epi32(1, 0x1_0001, 0x2_0001, 0x3_0001, 0x4_0001, 0x5_0001, 0x6_0001, 0x7_0001);
-            let shades = _mm256_srli_epi32(_mm256_madd_epi16(paint, numbered), 8);
+            let shades = _mm256_srli_epi32(_mm256_madd_epi16(fill, numbered), 8);
             let fours = _mm256_shuffle_epi8(shades, _mm256_set1_epi32(0x0C08_0400));
             let bytes = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256(fours, 1));
             // SAFETY: eight of 64 bytes, and the eight of the row. No load or store requires alignment.
@@ -332,7 +332,7 @@ pub(crate) mod avx2 {
         if n <= 16
             && let Some(row) = pixels.get_mut(at..at + 16)
         {
-            let [shade, step] = halves(spans.paint(k));
+            let [shade, step] = halves(spans.fill(k));
             let bytes = sse2::Block::new(shade, step).bytes();
             // SAFETY: sixteen of 64 bytes, and the sixteen of the row. No load or store requires alignment.
             unsafe {
@@ -344,7 +344,7 @@ pub(crate) mod avx2 {
         if n <= 32
             && let Some(row) = pixels.get_mut(at..at + 32)
         {
-            let [shade, step] = halves(spans.paint(k));
+            let [shade, step] = halves(spans.fill(k));
             let bytes = Block::new(shade, step).bytes();
             // SAFETY: 32 of 64 bytes, and the 32 of the row. No load or store requires alignment.
             unsafe {
@@ -356,11 +356,11 @@ pub(crate) mod avx2 {
         if n > 32
             && let Some(row) = pixels.get_mut(at..at + n)
         {
-            let [shade, step] = halves(spans.paint(k));
+            let [shade, step] = halves(spans.fill(k));
             return blocks(row, shade, step);
         }
         if let Some(row) = pixels.get_mut(at..at + n) {
-            let [shade, step] = halves(spans.paint(k));
+            let [shade, step] = halves(spans.fill(k));
             vectors(row, shade, step);
         }
     }

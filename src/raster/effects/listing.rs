@@ -1,13 +1,12 @@
-//! Turns faces with effects into spans: the same list as for plain triangles, plus what the stages
-//! need.
+//! Turns faces with effects into spans: the same list as for plain triangles, with a record for each span.
 //!
 //! A span is up to 64 pixels of a row. It begins where its shades are reseeded, a multiple of 64 pixels from the row's
 //! first covered pixel inside the frame, so every value is exact at its first pixel. A clip rectangle may hide its
 //! first pixels, but changes no byte of the others.
 //!
-//! Texture coordinates are in the list, and the start and step of a linear value in a column beside it. Shades that are
-//! linear on the face, and light at every pixel, are computed by the stage that needs them, from the planes that set-up
-//! leaves for eight faces and the span's [`Mark`].
+//! Its record has the texture coordinates, the start and step of each linear value, and a [`Mark`]. Shades that are
+//! linear on the face, and light at every pixel, are computed by the stage that needs them, from the mark and the planes
+//! that set-up leaves for eight faces.
 
 use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};

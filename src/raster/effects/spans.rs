@@ -101,7 +101,7 @@ impl<'a> Spans<'a> {
         offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
-            end += list.span(k).length + listed.data.mark(list.span(k).paint as usize).skipped();
+            end += list.span(k).length + listed.data.mark(list.span(k).fill as usize).skipped();
             if end as usize > PIXELS {
                 break;
             }
@@ -140,7 +140,7 @@ impl<'a> Spans<'a> {
     /// The index of the record of span `i`.
     #[inline(always)]
     fn record(&self, i: usize) -> usize {
-        self.list.span(self.first + i).paint as usize
+        self.list.span(self.first + i).fill as usize
     }
 
     /// The mark of span `i`.
@@ -213,7 +213,7 @@ impl<'a> Spans<'a> {
 
     /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
-    pub(super) fn paint(&self, i: usize) -> u32 {
+    pub(super) fn first_shade(&self, i: usize) -> u32 {
         self.data.shade(self.record(i))
     }
 
@@ -221,7 +221,7 @@ impl<'a> Spans<'a> {
     #[inline(always)]
     pub(super) fn values<T: Tint>(&self, i: usize, skipped: u32) -> SpanValues {
         let fog = if T::HAS_FOG { self.value(Value::Fog, i) } else { 0 };
-        SpanValues { paint: self.paint(i), fog, skipped }
+        SpanValues { shade: self.first_shade(i), fog, skipped }
     }
 
     /// The start of a value of span `i`, with the step in the upper half.
@@ -323,7 +323,7 @@ impl<'a> Spans<'a> {
     pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
         let span = self.list.span(k);
-        (span.at as usize, span.length as usize, self.data.mark(span.paint as usize).skipped())
+        (span.at as usize, span.length as usize, self.data.mark(span.fill as usize).skipped())
     }
 
     /// Where the drawn pixels of span `i` are among those of all spans, and the span.
@@ -397,13 +397,13 @@ compiled_for_each_level! {
 #[inline(always)]
 fn fill_linear(kernel: Kernel, spans: &Spans<'_>, Shaded { value, dither, .. }: Shaded, out: &mut [u8]) {
     match (value, dither) {
-        (None, None) => fill_plain(kernel, spans, |i| spans.paint(i), out),
+        (None, None) => fill_plain(kernel, spans, |i| spans.first_shade(i), out),
         (Some(value), None) => fill_plain(kernel, spans, |i| spans.value(value, i), out),
         (_, Some(thresholds)) => {
             for i in 0..spans.count() {
-                let paint = value.map_or_else(|| spans.paint(i), |value| spans.value(value, i));
+                let shade = value.map_or_else(|| spans.first_shade(i), |value| spans.value(value, i));
                 // The start in the lower half, the step in the upper.
-                let (start, step) = (paint as u16, (paint >> 16) as u16);
+                let (start, step) = (shade as u16, (shade >> 16) as u16);
                 let span = spans.span(i);
                 let row = span.thresholds(thresholds);
                 fill_dithered(&mut out[span.pixels()], start.wrapping_sub(128), step, row, span.column());
@@ -413,11 +413,11 @@ fn fill_linear(kernel: Kernel, spans: &Spans<'_>, Shaded { value, dither, .. }: 
 }
 
 #[inline(always)]
-fn fill_plain(kernel: Kernel, spans: &Spans<'_>, paint: impl Fn(usize) -> u32, out: &mut [u8]) {
+fn fill_plain(kernel: Kernel, spans: &Spans<'_>, shade: impl Fn(usize) -> u32, out: &mut [u8]) {
     for i in 0..spans.count() {
-        let paint = paint(i);
+        let shade = shade(i);
         // The start in the lower half, the step in the upper.
-        let (start, step) = (paint as u16, (paint >> 16) as u16);
+        let (start, step) = (shade as u16, (shade >> 16) as u16);
         let (first, len) = spans.range(i);
         if len > LONG {
             kernel.fill(&mut out[first..first + len], start, step);

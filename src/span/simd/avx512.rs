@@ -103,9 +103,9 @@ unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     // SAFETY: 16 bytes; the load requires no alignment.
     let numbers = unsafe { _mm_loadu_si128(EVEN.as_ptr().cast()) };
     for k in 0..spans.count() {
-        let Span { at, length, paint } = spans.span(k);
+        let Span { at, length, fill } = spans.span(k);
         // The shade in the lower half, the step in the upper.
-        let (shade, step) = (paint as u16, (paint >> 16) as u16);
+        let (shade, step) = (fill as u16, (fill >> 16) as u16);
         // SAFETY: by the caller's promise.
         let row = unsafe { pixels.add(at as usize) };
         if length <= 16 {
@@ -170,14 +170,14 @@ unsafe fn each_nearer<const FIXED16: bool>(
     let odd_bytes = _mm_set1_epi16(0xFF00_u16.cast_signed());
     let mut nearer = 0;
     for k in 0..spans.count() {
-        let (Span { at, length, paint }, SpanDepth { cell, z, dz }) = (spans.span(k), spans.depth(k));
+        let (Span { at, length, fill }, SpanDepth { cell, z, dz }) = (spans.span(k), spans.depth(k));
         // SAFETY: by the caller's promise.
         let (mut row, mut cell) = unsafe { (pixels.add(at as usize), cells.add(cell as usize)) };
         let steps = _mm512_set1_epi64(dz);
         let mut z0 = _mm512_add_epi64(_mm512_mullo_epi64(steps, numbers), _mm512_set1_epi64(z));
         let (mut fixed, mut fixed_step) = (_mm512_setzero_si512(), _mm512_setzero_si512());
         if FIXED16 {
-            let (start, step) = shades(paint);
+            let (start, step) = shades(fill);
             fixed_step = _mm512_set1_epi32(step.cast_signed());
             let start = _mm512_set1_epi32(start.cast_signed());
             fixed = _mm512_add_epi32(_mm512_mullo_epi32(fixed_step, lanes), start);
@@ -190,7 +190,7 @@ unsafe fn each_nearer<const FIXED16: bool>(
             let bytes = if FIXED16 {
                 _mm256_srli_epi32::<16>(_mm512_castsi512_si256(fixed))
             } else {
-                _mm256_srli_epi32::<8>(_mm256_madd_epi16(_mm256_set1_epi32(paint.cast_signed()), numbered))
+                _mm256_srli_epi32::<8>(_mm256_madd_epi16(_mm256_set1_epi32(fill.cast_signed()), numbered))
             };
             // SAFETY: the masks have a bit for each of the span's pixels, which are at most eight.
             unsafe {
@@ -203,7 +203,7 @@ unsafe fn each_nearer<const FIXED16: bool>(
             continue;
         }
         // The shade in the lower half, the step in the upper.
-        let (shade, step) = (paint as u16, (paint >> 16) as u16);
+        let (shade, step) = (fill as u16, (fill >> 16) as u16);
         let mut z1 = _mm512_add_epi64(z0, _mm512_slli_epi64::<3>(steps));
         let step = _mm_set1_epi16(step.cast_signed());
         let mut even = _mm_add_epi16(_mm_mullo_epi16(step, even_numbers), _mm_set1_epi16(shade.cast_signed()));

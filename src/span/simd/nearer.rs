@@ -48,7 +48,7 @@ fn fill_16_16(
     shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
     fill(avx2, pixels, cells, spans, |span| {
-        let (start, step) = shades(span.paint);
+        let (start, step) = shades(span.fill);
         Own::Fixed16(start, step)
     })
 }
@@ -154,7 +154,7 @@ fn one_by_one(pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, number: us
     let (z, dz) = (depth.z >> 8, depth.dz >> 8);
     match own {
         Own::Fixed16(start, step) => fill_nearer_16_16(row, cells, [start, step], z, dz),
-        Own::Linear => fill_nearer(row, cells, span.paint as u16, (span.paint >> 16) as u16, z, dz),
+        Own::Linear => fill_nearer(row, cells, span.fill as u16, (span.fill >> 16) as u16, z, dz),
     }
 }
 
@@ -241,8 +241,8 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
         // shade + k·step, of which bits 8 to 15 count, ...
         Own::Linear => {
             let numbered = _mm256_or_si256(_mm256_slli_epi32(lanes, 16), _mm256_set1_epi32(1));
-            let shades = _mm256_madd_epi16(_mm256_set1_epi32(span.paint.cast_signed()), numbered);
-            (shades, _mm256_set1_epi32((span.paint >> 16 << 3).cast_signed()))
+            let shades = _mm256_madd_epi16(_mm256_set1_epi32(span.fill.cast_signed()), numbered);
+            (shades, _mm256_set1_epi32((span.fill >> 16 << 3).cast_signed()))
         }
         // ... or bits 16 to 23.
         Own::Fixed16(start, step) => {
@@ -281,7 +281,7 @@ fn eights(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth, own: 
 #[inline]
 #[target_feature(enable = "avx2")]
 fn sixteens(row: &mut [u8], cells: &mut [u32], span: Span, depth: SpanDepth) -> __m256i {
-    let (start, step) = (span.paint as i16, (span.paint >> 16) as i16);
+    let (start, step) = (span.fill as i16, (span.fill >> 16) as i16);
     let steps = _mm256_set1_epi16(step);
     // Arranged as by `halves`.
     let numbers = _mm256_setr_epi16(0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 12, 13, 14, 15);
@@ -340,7 +340,7 @@ fn four(
         }
         Own::Linear => {
             let numbered = _mm_or_si128(_mm_slli_epi32(lanes, 16), _mm_set1_epi32(1));
-            _mm_srli_epi32(_mm_madd_epi16(_mm_set1_epi32(span.paint.cast_signed()), numbered), 8)
+            _mm_srli_epi32(_mm_madd_epi16(_mm_set1_epi32(span.fill.cast_signed()), numbered), 8)
         }
     };
     let bytes = _mm_blendv_epi8(after, bytes, stay);

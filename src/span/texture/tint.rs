@@ -6,8 +6,8 @@ use crate::simd::Lanes8;
 /// Values of a span that are linear along it: the first, with the step in the upper half.
 #[derive(Clone, Copy)]
 pub(crate) struct SpanValues {
-    /// The packed shade.
-    pub(crate) paint: u32,
+    /// The shade, with the step in the upper half.
+    pub(crate) shade: u32,
     /// The density of fog, if there is any.
     pub(crate) fog: u32,
     /// The number of pixels skipped at the beginning.
@@ -106,7 +106,7 @@ impl Tint for Painted<'_> {
         of.ramp(
             s,
             #[inline(always)]
-            |values| if let Some(shade) = flat { u32::from(shade) << 8 } else { values.paint },
+            |values| if let Some(shade) = flat { u32::from(shade) << 8 } else { values.shade },
         )
     }
     #[inline(always)]
@@ -131,7 +131,7 @@ impl Tint for Untextured {
         of.ramp(
             s,
             #[inline(always)]
-            |values| values.paint,
+            |values| values.shade,
         )
     }
     #[inline(always)]
