@@ -40,7 +40,7 @@ pub(crate) struct SpanList {
     /// Offsets of the first cells, if there are depths and these offsets differ from those of the pixels.
     cell: Numbers,
     length: Numbers,
-    /// The shade, with the step in the upper half; or the index of a [record](Records).
+    /// The shade, with the step in the upper half; or the index of a [record](Records) in the lowest eight bits.
     fill: Numbers,
     /// Depths, with the integer part in the upper half, modulo 2⁶⁴.
     z: Depths,

@@ -36,17 +36,16 @@ use crate::span::texture::Levels;
 /// | bits | the first | the second |
 /// |---|---|---|
 /// | 0 to 5, 0 to 15 | the face, among those whose planes are stored | the column, from the planes' first pixel |
-/// | 6 to 11, 16 to 31 | pixels hidden by the clip rectangle at its beginning | the row, from the planes' first pixel |
-/// | 12 to 18 | the index of the span in its row | |
-/// | 19 to 31 | the row's last pixel inside the frame, from the first one of the span | |
+/// | 6 to 12, 16 to 31 | the index of the span in its row | the row, from the planes' first pixel |
+/// | 13 to 31 | the row's last pixel inside the frame, from the first one of the span | |
 #[derive(Clone, Copy)]
 pub(super) struct Mark([u32; 2]);
 
 impl Mark {
-    fn new(face: u32, [skipped, number, last]: [i32; 3], [column, row]: [i32; 2]) -> Self {
-        // The numbers are below 64, 128 and 8,192, column and row below 65,536.
+    fn new(face: u32, [number, last]: [i32; 2], [column, row]: [i32; 2]) -> Self {
+        // The numbers are below 128 and 8,192, column and row below 65,536.
         let place = column.cast_unsigned() | row.cast_unsigned() << 16;
-        Self([face | (skipped << 6 | number << 12 | last << 19).cast_unsigned(), place])
+        Self([face | (number << 6 | last << 13).cast_unsigned(), place])
     }
 
     #[inline(always)]
@@ -54,20 +53,15 @@ impl Mark {
         (self.0[0] & 63) as usize
     }
 
-    #[inline(always)]
-    pub(super) const fn skipped(self) -> u32 {
-        self.0[0] >> 6 & 63
-    }
-
     /// Pixels of the row before the span.
     #[inline(always)]
     pub(super) const fn before(self) -> i32 {
-        (self.0[0] >> 12 & 127).cast_signed() * RESEED
+        (self.0[0] >> 6 & 127).cast_signed() * RESEED
     }
 
     #[inline(always)]
     pub(super) const fn last(self) -> i32 {
-        (self.0[0] >> 19).cast_signed()
+        (self.0[0] >> 13).cast_signed()
     }
 
     /// Column and row.
@@ -489,11 +483,12 @@ impl<'a> EffectSpans<'a> {
             // A column of a frame.
             let z = depth.fixed_at(x, row.y);
             let at = [x as usize; 2];
-            // A record for each span of the list.
+            // A record for each span of the list, at most 128; up to 63 pixels are skipped.
             let record = list.count();
-            if list.push(at, (end - x) as usize, record as u32, [z << 8, depth.step() << 8]) {
+            let fill = record as u32 | ((x - seed) as u32) << 8;
+            if list.push(at, (end - x) as usize, fill, [z << 8, depth.step() << 8]) {
                 let number = (seed - row.origin) / RESEED;
-                let mark = Mark::new(0, [x - seed, number, row.last - seed], [seed, row.y]);
+                let mark = Mark::new(0, [number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3]);
                 match texture {
@@ -562,9 +557,9 @@ impl Shades8 for EffectSpans<'_> {
         let skipped = s.sub_i32(s.low_bits(parts.start), seed);
         let last = s.sub_i32(s.sub_i32(s.low_bits(parts.end), s.splat_i32(1)), seed);
         // For spans that exist the fields are in range: see `Mark`.
-        let mark = s.or_i32(batches.faces(s, lane), s.shl_i32(skipped, 6));
-        let mark = s.or_i32(mark, s.shl_i32(s.shr_i32(s.sub_i32(seed, row), 6), 12));
-        let mark = s.or_i32(mark, s.shl_i32(last, 19));
+        // Whole pieces of 64 pixels are before the span.
+        let mark = s.or_i32(batches.faces(s, lane), s.sub_i32(seed, row));
+        let mark = s.or_i32(mark, s.shl_i32(last, 13));
         let number = s.low_bits(s.add(j, s.splat_f64(ROUND_MAGIC)));
         numbers.put(s, record, 0, mark);
         numbers.put(s, record, 1, s.or_i32(seed, s.shl_i32(number, 16)));
@@ -584,7 +579,8 @@ impl Shades8 for EffectSpans<'_> {
             None => {}
         }
         // Below 256.
-        s.add_i32(s.splat_i32(record as i32), s.load_i32(&lanes::NUMBERS))
+        let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&lanes::NUMBERS));
+        s.or_i32(records, s.shl_i32(skipped, 8))
     }
 
     #[inline(always)]

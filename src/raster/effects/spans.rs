@@ -55,6 +55,14 @@ pub(super) struct Span {
     pub(super) first: usize,
     /// Number of its pixels, hidden ones included: 1 to 64.
     pub(super) len: usize,
+    /// How many of its first pixels are hidden by the clip rectangle.
+    skipped: u32,
+}
+
+/// How many of a span's first pixels are hidden by the clip rectangle: at most 63.
+#[inline(always)]
+fn skipped(span: list::Span) -> u32 {
+    span.fill >> 8
 }
 
 impl Span {
@@ -88,7 +96,7 @@ impl Span {
     pub(super) fn row(&self) -> Row {
         let origin = self.x - self.mark.before();
         // At most 64.
-        let (x0, x1) = (self.x + self.mark.skipped() as i32, self.x + self.len as i32);
+        let (x0, x1) = (self.x + self.skipped as i32, self.x + self.len as i32);
         Row { y: self.y, origin, x0, x1, last: self.x + self.last() }
     }
 }
@@ -101,7 +109,7 @@ impl<'a> Spans<'a> {
         offsets[0] = 0;
         for k in first..list.count() {
             // At most 64.
-            end += list.span(k).length + listed.data.mark(list.span(k).fill as usize).skipped();
+            end += list.span(k).length + skipped(list.span(k));
             if end as usize > PIXELS {
                 break;
             }
@@ -140,7 +148,7 @@ impl<'a> Spans<'a> {
     /// The index of the record of span `i`.
     #[inline(always)]
     fn record(&self, i: usize) -> usize {
-        self.list.span(self.first + i).fill as usize
+        (self.list.span(self.first + i).fill & 0xFF) as usize
     }
 
     /// The mark of span `i`.
@@ -161,9 +169,10 @@ impl<'a> Spans<'a> {
         let mark = self.mark(i);
         let (planes, lane) = self.data.planes(mark.face());
         let [column, row] = mark.place();
-        let len = (self.list.span(self.first + i).length + mark.skipped()) as usize;
-        let first = self.pixels[i] as usize;
-        Span { mark, x: planes.column[lane] + column, y: planes.row[lane] + row, first, len }
+        let span = self.list.span(self.first + i);
+        let (skipped, first) = (skipped(span), self.pixels[i] as usize);
+        let (x, y, len) = (planes.column[lane] + column, planes.row[lane] + row, (span.length + skipped) as usize);
+        Span { mark, x, y, first, len, skipped }
     }
 
     /// Where the pixels of span `i` begin among those of all, and how many it has.
@@ -323,13 +332,14 @@ impl<'a> Spans<'a> {
     pub(super) fn in_frame(&self, i: usize) -> (usize, usize, u32) {
         let k = self.first + i;
         let span = self.list.span(k);
-        (span.at as usize, span.length as usize, self.data.mark(span.fill as usize).skipped())
+        (span.at as usize, span.length as usize, skipped(span))
     }
 
     /// Where the drawn pixels of span `i` are among those of all spans, and the span.
     #[inline(always)]
     pub(super) fn drawn(&self, i: usize) -> (usize, list::Span) {
-        ((self.pixels[i] + self.mark(i).skipped()) as usize, self.list.span(self.first + i))
+        let span = self.list.span(self.first + i);
+        ((self.pixels[i] + skipped(span)) as usize, span)
     }
 
     /// The depth of the first drawn pixel of span `i`.
