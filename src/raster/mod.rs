@@ -64,7 +64,7 @@ mod setup;
 mod setup_texture;
 #[cfg(feature = "alloc")]
 pub(crate) mod shade_trace;
-mod shaded;
+pub(crate) mod shaded;
 pub(crate) mod spans;
 pub(crate) mod triangle;
 pub(crate) mod triangles;

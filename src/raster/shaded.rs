@@ -71,7 +71,7 @@ impl Kind {
 }
 
 /// Changes along the rows of eight triangles, and their shades' range.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 struct Steps8 {
     /// Perspective-correct: changes of the numerator and of the divisor per pixel.
@@ -82,12 +82,32 @@ struct Steps8 {
 
 const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
 
+/// Memory for listed spans: the steps of their triangles, their records and their bytes. A frame within an error budget
+/// draws a hundred lists, so clearing it for each would take 3 % of the time.
+#[derive(Debug)]
+pub(crate) struct ShadedData {
+    steps: [Steps8; Batches::COUNT],
+    /// 16.16: shade and step. Otherwise the triangle, among those whose steps are stored; in f32 with the index of the
+    /// first pixel, relative to the pixel where the sums are, in the upper half.
+    numbers: SpanNumbers<2>,
+    /// Numerator and divisor.
+    sums: SpanSums<2>,
+    bytes: SpanBytes,
+}
+
+impl Default for ShadedData {
+    fn default() -> Self {
+        let steps = Steps8 { sums: [[0.0; LANES]; 2], words: [[0; LANES]; 4] };
+        let (numbers, sums, bytes) = (SpanNumbers::NONE, SpanSums::NONE, SpanBytes::NONE);
+        Self { steps: [steps; Batches::COUNT], numbers, sums, bytes }
+    }
+}
+
 /// Triangles whose spans may be listed.
 struct ShadedFaces<'a> {
     triangles: &'a Triangles<'a>,
     picks: Picks<'a>,
     layout: FrameLayout,
-    steps: [Steps8; Batches::COUNT],
     batches: Batches,
 }
 
@@ -99,9 +119,9 @@ impl ShadedFaces<'_> {
     /// The perspective-correct bytes of a span, followed by arbitrary ones to fill blocks of eight. Returns false if
     /// estimates cannot decide all of them.
     #[inline(always)]
-    fn estimate<S: Lanes8>(&self, s: S, face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) -> bool {
+    fn estimate<S: Lanes8>(s: S, steps: &[Steps8], face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) -> bool {
         let (batch, lane) = Batches::of_face(face as usize);
-        let [dn, dd] = &self.steps[batch].sums;
+        let [dn, dd] = &steps[batch].sums;
         fill_estimated_blocks(s, row, [n, dn[lane]], [d, dd[lane]])
     }
 
@@ -120,11 +140,11 @@ impl ShadedFaces<'_> {
     /// The bytes of a span in f32, followed by arbitrary ones to fill blocks of eight.
     #[cfg(feature = "alloc")]
     #[inline(always)]
-    fn quotients(&self, face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) {
+    fn quotients(steps: &[Steps8], face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) {
         // The triangle in the lower half.
         let (batch, lane) = Batches::of_face((face & 0xFFFF) as usize);
         let mut singles = [0.0; 4];
-        for (single, bits) in singles.iter_mut().zip(&self.steps[batch].words) {
+        for (single, bits) in singles.iter_mut().zip(&steps[batch].words) {
             *single = f32::from_bits(bits[lane].cast_unsigned());
         }
         let [dn, dd, least, greatest] = singles;
@@ -141,12 +161,7 @@ pub(super) struct Shaded8<'a> {
     kind: Kind,
     listed: ShadedFaces<'a>,
     records: Records,
-    /// 16.16: shade and step. Otherwise the triangle, among those whose steps are stored; in f32 with the index of the
-    /// first pixel, relative to the pixel where the sums are, in the upper half.
-    numbers: SpanNumbers<2>,
-    /// Numerator and divisor.
-    sums: SpanSums<2>,
-    bytes: SpanBytes,
+    data: &'a mut ShadedData,
     /// 16.16: 255·h, and A.
     fraction: Floats,
     area: Floats,
@@ -161,16 +176,18 @@ pub(super) struct Shaded8<'a> {
 
 impl<'a> Shaded8<'a> {
     #[inline(always)]
-    pub(super) fn new(kind: Kind, triangles: &'a Triangles<'a>, picks: Picks<'a>, layout: FrameLayout) -> Self {
+    pub(super) fn new(
+        kind: Kind,
+        (triangles, picks): (&'a Triangles<'a>, Picks<'a>),
+        layout: FrameLayout,
+        data: &'a mut ShadedData,
+    ) -> Self {
         let floats = [0.0; LANES];
-        let steps = Steps8 { sums: [floats; 2], words: [[0; LANES]; 4] };
         Self {
             kind,
-            listed: ShadedFaces { triangles, picks, layout, steps: [steps; Batches::COUNT], batches: Batches::NONE },
+            listed: ShadedFaces { triangles, picks, layout, batches: Batches::NONE },
             records: Records::NONE,
-            numbers: SpanNumbers::NONE,
-            sums: SpanSums::NONE,
-            bytes: SpanBytes::NONE,
+            data,
             fraction: floats,
             area: floats,
             planes: [[floats; 2]; 2],
@@ -188,7 +205,7 @@ impl<'a> Shaded8<'a> {
         s.store_f64(fraction, &mut self.fraction);
         s.store_f64(basis.area, &mut self.area);
         let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
-        s.store_i32(step, &mut self.listed.steps[self.listed.batches.current()].words[0]);
+        s.store_i32(step, &mut self.data.steps[self.listed.batches.current()].words[0]);
     }
 
     #[inline(always)]
@@ -207,7 +224,7 @@ impl<'a> Shaded8<'a> {
         let [spread, least] = basis.conditions(s, ends(s, depths));
         let is_sure = s.is_less(spread, s.mul(least, s.splat_f64(524_288.0)));
         let (zero, one) = (s.splat_f64(0.0), s.splat_f64(1.0));
-        let steps = &mut self.listed.steps[self.listed.batches.current()];
+        let steps = &mut self.data.steps[self.listed.batches.current()];
         for (i, (values, unsure)) in [(numerators, zero), (depths, one)].into_iter().enumerate() {
             let [at_first, per_row, per_column] = basis.plane(s, values);
             s.store_f64(s.select(is_sure, at_first, unsure), &mut self.planes[i][0]);
@@ -247,7 +264,7 @@ impl<'a> Shaded8<'a> {
                 s.store_f64(values[corner][i], to);
             }
         }
-        let steps = &mut self.listed.steps[self.listed.batches.current()];
+        let steps = &mut self.data.steps[self.listed.batches.current()];
         let [dn, dd, least, greatest] = &mut steps.words;
         for (i, (unit, steps)) in [(1.0, dn), (256.0, dd)].into_iter().enumerate() {
             // Whole numbers below 2⁴⁸ and 2¹², exact in sums with the magic number.
@@ -277,30 +294,31 @@ impl<'a> Shaded8<'a> {
     #[inline(always)]
     fn draw_by<S: Lanes8, const IS_ESTIMATE: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
         let (count, mut first, mut nearer) = (list.count(), 0, 0);
+        let ShadedData { steps, numbers, sums: starts, bytes: all_bytes } = &mut *self.data;
         let depths = list.depths();
         while first < count {
             let end = count.min(first + SpanBytes::COUNT);
             for k in first..end {
                 let span = list.span(k);
                 let record = span.fill as usize;
-                let face = self.numbers.of(record, 0);
-                let sums = self.sums.of(record).map(|bits| f64::from_bits(bits.cast_unsigned()));
-                let bytes = self.bytes.of_mut(k - first);
+                let face = numbers.of(record, 0);
+                let sums = starts.of(record).map(|bits| f64::from_bits(bits.cast_unsigned()));
+                let bytes = all_bytes.of_mut(k - first);
                 let row = (&mut bytes[..], span.length as usize);
                 if IS_ESTIMATE {
-                    if !self.listed.estimate(s, face, sums, row) {
+                    if !ShadedFaces::estimate(s, steps, face, sums, row) {
                         self.listed.exact_bytes(span, face, bytes);
                     }
                 } else {
                     #[cfg(feature = "alloc")]
-                    self.listed.quotients(face, sums, row);
+                    ShadedFaces::quotients(steps, face, sums, row);
                 }
             }
             let of = (
                 #[inline(always)]
                 |k| {
                     let Span { at, length, .. } = list.span(k);
-                    Written { at, bytes: self.bytes.of(k - first), length: length as usize }
+                    Written { at, bytes: all_bytes.of(k - first), length: length as usize }
                 },
                 #[inline(always)]
                 |k| depths.of(k),
@@ -388,24 +406,25 @@ impl Shades8 for Shaded8<'_> {
         let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS));
         // At most 255.
         let face = self.listed.batches.faces(s, lane);
-        let steps = &self.listed.steps[self.listed.batches.current()];
+        let ShadedData { steps, numbers, sums: starts, .. } = &mut *self.data;
+        let steps = &steps[self.listed.batches.current()];
         if self.kind == Kind::Fixed16 {
             let n = ends.shade_numerator(s, lane, setup, parts.row);
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
             let step = lane.load_i32(s, &steps.words[0]);
-            self.numbers.put(s, record, 0, s.add_i32(start, s.mul_i32(step, skipped)));
-            self.numbers.put(s, record, 1, step);
+            numbers.put(s, record, 0, s.add_i32(start, s.mul_i32(step, skipped)));
+            numbers.put(s, record, 1, step);
             return records;
         }
         if self.kind == Kind::Hyperbolic {
             let columns = s.sub(parts.start, magic);
-            self.numbers.put(s, record, 0, face);
+            numbers.put(s, record, 0, face);
             for (i, [at_first, per_row]) in self.planes.iter().enumerate() {
                 let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
                 let sum = s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row);
-                self.sums.put(s, record, i, s.bits(sum));
+                starts.put(s, record, i, s.bits(sum));
             }
             return records;
         }
@@ -413,7 +432,7 @@ impl Shades8 for Shaded8<'_> {
         let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
         let at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
         let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
-        self.numbers.put(s, record, 0, s.or_i32(face, s.shl_i32(first, 16)));
+        numbers.put(s, record, 0, s.or_i32(face, s.shl_i32(first, 16)));
         let columns = s.sub(at, magic);
         let mut sums = [s.splat_f64(0.0); 2];
         for (weights, values) in self.weights.iter().zip(&self.values) {
@@ -426,7 +445,7 @@ impl Shades8 for Shaded8<'_> {
             }
         }
         for (i, sum) in sums.into_iter().enumerate() {
-            self.sums.put(s, record, i, s.bits(sum));
+            starts.put(s, record, i, s.bits(sum));
         }
         records
     }
@@ -438,7 +457,7 @@ impl Shades8 for Shaded8<'_> {
         if self.kind == Kind::Float {
             let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
             let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps();
-            for (to, step) in self.listed.steps[self.listed.batches.current()].words.iter_mut().zip(steps) {
+            for (to, step) in self.data.steps[self.listed.batches.current()].words.iter_mut().zip(steps) {
                 to[i % LANES] = step.to_bits().cast_signed();
             }
         }
@@ -466,7 +485,7 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     shades.records = Records::NONE;
     match shades.kind {
         Kind::Fixed16 => {
-            let numbers = &shades.numbers;
+            let numbers = &shades.data.numbers;
             let of_span = |record: u32| (numbers.of(record as usize, 0), numbers.of(record as usize, 1));
             let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
             list.clear(nearer);

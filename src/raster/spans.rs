@@ -29,7 +29,7 @@ use super::reference::depth::DepthPlane;
 use super::reference::shade::{RESEED, ShadePlane};
 use super::rows::{self, Linear, Shades8};
 use super::setup::{Corners8, FrameLayout, TriangleSetup8};
-use super::shaded::{Kind, Shaded8};
+use super::shaded::{Kind, Shaded8, ShadedData};
 use super::triangle::Raster;
 use super::vertex::Vertex;
 use crate::fixed::HAS_F64;
@@ -73,13 +73,15 @@ impl Default for SpanScratch {
 
 impl<D: Cell> Raster<'_, D> {
     /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are those of
-    /// calling [`triangle`](Self::triangle) for each.
+    /// calling [`triangle`](Self::triangle) for each. Shadings other than linear ones in 8.8 use the memory given, or
+    /// clear their own.
     pub(crate) fn picks(
         &mut self,
         triangles: &Triangles<'_>,
         picks: Picks<'_>,
         interpolation: Interpolation,
         SpanScratch(list): &mut SpanScratch,
+        shaded: Option<&mut ShadedData>,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (_, pitch) = self.frame.pixels_mut();
@@ -102,6 +104,7 @@ impl<D: Cell> Raster<'_, D> {
         let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
         let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width, depth_base };
         let (mut first, count) = (0, picks.picks.len());
+        let mut shaded = shaded;
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
             if together == 0 {
@@ -120,7 +123,10 @@ impl<D: Cell> Raster<'_, D> {
             let place = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match kind {
-                Some(kind) => draw_shaded(level, of, kind, place, target, list),
+                Some(kind) => match &mut shaded {
+                    Some(data) => draw_shaded(level, of, (kind, data), place, target, list),
+                    None => draw_shaded(level, of, (kind, &mut ShadedData::default()), place, target, list),
+                },
                 None => draw_linear(level, of, place, target, list),
             };
             first += together;
@@ -221,15 +227,20 @@ fn draw_by<S: Lanes8, const DEPTHS: bool>(
 compiled_for_each_level! {
     /// Draws triangles with a shading other than a linear one in 8.8; if there are cells, only where they are nearer.
     #[inline(never)]
-    fn draw_shaded[][](of: Drawn<'_>, kind: Kind, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats
-        = draw_shaded_by;
+    fn draw_shaded[][](
+        of: Drawn<'_>,
+        kind: (Kind, &mut ShadedData),
+        place: Place,
+        target: &mut Target<'_>,
+        list: &mut SpanList,
+    ) -> DrawStats = draw_shaded_by;
 }
 
 #[inline(always)]
 fn draw_shaded_by<S: Lanes8>(
     s: S,
     of: Drawn<'_>,
-    kind: Kind,
+    (kind, data): (Kind, &mut ShadedData),
     place: Place,
     target: &mut Target<'_>,
     list: &mut SpanList,
@@ -238,7 +249,7 @@ fn draw_shaded_by<S: Lanes8>(
     if !HAS_F64 {
         return DrawStats::default();
     }
-    let mut shades = Shaded8::new(kind, of.triangles, of.picks, place.0);
+    let mut shades = Shaded8::new(kind, (of.triangles, of.picks), place.0, data);
     draw_triangles::<S, _, true>(s, of, place, target, &mut shades, list)
 }
 
@@ -416,7 +427,7 @@ mod tests {
                     let picks = Picks { picks: list.as_slice(), flat: &flat };
                     let mut drawn = DrawStats::default();
                     if are_together {
-                        drawn = raster.picks(&all, picks, Interpolation::Gouraud, &mut SpanScratch::default());
+                        drawn = raster.picks(&all, picks, Interpolation::Gouraud, &mut SpanScratch::default(), None);
                     } else {
                         for k in 0..flat.len() {
                             drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud);

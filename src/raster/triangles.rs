@@ -279,7 +279,7 @@ impl<D: Cell> Raster<'_, D> {
         };
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &const { corner_indices::<N>() }, by_corner: Some(N) };
-        self.picks(&triangles, picks, *drawn_by, spans)
+        self.picks(&triangles, picks, *drawn_by, spans, None)
     }
 
     /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are those of
@@ -344,7 +344,7 @@ impl<D: Cell> Raster<'_, D> {
             let picks = list.as_slice();
             let flat = one_shade.as_ref().map_or(&[][..], |shades| &shades[..picks.len()]);
             let triangles = Triangles { columns, indices: of_list, by_corner: None };
-            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation), &mut spans);
+            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation), &mut spans, None);
         }
         drawn
     }
@@ -370,7 +370,7 @@ impl<D: Cell> Raster<'_, D> {
         pick(self.kernel.simd_level(), &mut list, 0, &masks, 1);
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &INDICES, by_corner: None };
-        self.picks(&triangles, picks, drawn_by(interpolation), &mut SpanScratch::default())
+        self.picks(&triangles, picks, drawn_by(interpolation), &mut SpanScratch::default(), None)
     }
 }
 

@@ -15,6 +15,7 @@ use crate::raster::columns::{Picks, Triangles};
 use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::scan_line::Lists;
+use crate::raster::shaded::ShadedData;
 use crate::raster::spans::SpanScratch;
 use crate::raster::{DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use crate::scene::Scene;
@@ -25,6 +26,7 @@ use crate::span::Kernel;
 pub(super) struct Scratch {
     depths: DepthMemory,
     spans: SpanScratch,
+    shaded: ShadedData,
     effects: EffectScratch,
     pub(super) pick: PickScratch,
     pub(super) integer: IntegerScratch,
@@ -83,6 +85,7 @@ struct Painter<'a, 'b> {
     pipelines: Pipelines<'a>,
     raster: &'a mut Raster<'b>,
     spans: &'a mut SpanScratch,
+    shaded: &'a mut ShadedData,
     scratch: &'a mut EffectScratch,
 }
 
@@ -90,7 +93,7 @@ impl Painter<'_, '_> {
     /// Draws faces of one look, in order.
     fn draw(&mut self, object: usize, look: Look, triangles: &Triangles<'_>, picks: Picks<'_>) -> DrawStats {
         if !look.effects {
-            return self.raster.picks(triangles, picks, look.interpolation(), self.spans);
+            return self.raster.picks(triangles, picks, look.interpolation(), self.spans, Some(self.shaded));
         }
         let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);
         self.pipelines.with(object, look, |pipeline| raster.picks_with_effects(triangles, picks, pipeline, scratch))
@@ -158,8 +161,8 @@ impl Renderer {
         }
         let culling = (*kernel, Some(raster.clip()));
         let pipelines = Pipelines { scene, cache, kernel: *kernel };
-        let (spans, effects) = (&mut scratch.spans, &mut scratch.effects);
-        let mut painter = Painter { pipelines, raster: &mut raster, spans, scratch: effects };
+        let (spans, shaded, effects) = (&mut scratch.spans, &mut scratch.shaded, &mut scratch.effects);
+        let mut painter = Painter { pipelines, raster: &mut raster, spans, shaded, scratch: effects };
         let mut drawn = DrawStats::default();
         let memory = (&mut scratch.integer, &mut scratch.pick, &mut scratch.counts);
         each_run(scene, cache, culling, deferred, memory, stats, &mut |object, run| {

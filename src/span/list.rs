@@ -469,6 +469,7 @@ fn eight_records<T>(of: &mut [T; Records::CAPACITY], first: usize) -> &mut [T; L
 }
 
 /// Bytes of some spans of a list, 64 each.
+#[derive(Debug)]
 pub(crate) struct SpanBytes([[u8; SpanBytes::LENGTH]; SpanBytes::COUNT]);
 
 impl SpanBytes {
