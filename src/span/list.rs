@@ -71,7 +71,7 @@ pub(crate) struct Spans8<S: Lanes8> {
     pub(crate) at: S::I32,
     pub(crate) cell: S::I32,
     pub(crate) length: S::I32,
-    /// As in the list.
+    /// Their fills, as in the list.
     pub(crate) fill: S::I32,
     /// Depths, as in the list.
     pub(crate) z: S::I64,
@@ -597,7 +597,7 @@ pub(crate) struct Span {
     /// The offset of its first pixel.
     pub(crate) at: u32,
     pub(crate) length: u32,
-    /// As in the list.
+    /// Its fill, as in the list.
     pub(crate) fill: u32,
 }
 

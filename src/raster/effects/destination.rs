@@ -7,7 +7,7 @@ use crate::lanes::LANES;
 use crate::simd::{F32Lanes8, Lanes8};
 use crate::span::depth_test::{Masks, test_blocks};
 use crate::span::list::{SpanDepth, chunk_at};
-use crate::span::texture::{FOUR, PlacesAlong, Texels, Tint, show_along, show_block, show_masked};
+use crate::span::texture::{FOUR, OffsetsAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.
 pub(super) trait Destination {
@@ -42,10 +42,10 @@ pub(super) trait Destination {
         (_spans, _i, _before): (&Spans<'_>, usize, u32),
         DrawnPixels { at, length, .. }: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        places: impl PlacesAlong<S>,
+        offsets: impl OffsetsAlong<S>,
     ) {
         if let Some(row) = self.all().get_mut(at..) {
-            show_along(s, (row, length), texels, (tint, along), places);
+            show_along(s, (row, length), texels, (tint, along), offsets);
         }
     }
 }
@@ -227,7 +227,7 @@ impl Destination for Masked<'_> {
         (spans, i, before): (&Spans<'_>, usize, u32),
         mut pixels: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
-        mut places: impl PlacesAlong<S>,
+        mut offsets: impl OffsetsAlong<S>,
     ) {
         if !pixels.is_tested {
             let Some(tested) = self.test(s, spans, i, pixels) else { return };
@@ -236,7 +236,7 @@ impl Destination for Masked<'_> {
         let DrawnPixels { at, length, stays, .. } = pixels;
         if stays != u64::MAX {
             if let Some(block) = chunk_at(self.pixels, at) {
-                show_block(s, (block, stays), texels, (tint, along), &mut places);
+                show_block(s, (block, stays), texels, (tint, along), &mut offsets);
             }
             return;
         }
@@ -255,7 +255,7 @@ impl Destination for Masked<'_> {
         } else if let Some(last) = masks.last_mut() {
             *last = behind((length - 1) % LANES + 1);
         }
-        show_masked(s, (row, masks), texels, (tint, along), places);
+        show_masked(s, (row, masks), texels, (tint, along), offsets);
     }
 }
 

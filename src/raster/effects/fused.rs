@@ -10,7 +10,7 @@ use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
 use crate::span::list::Target;
-use crate::span::texture::{Blended, FirstPlace, Fogged, Texels, Tint, Untextured};
+use crate::span::texture::{Blended, FirstOffset, Fogged, Texels, Tint, Untextured};
 
 impl Direct<'_> {
     /// Draws the pixels of every span, fogged or blended as the pipeline says; if there are cells,
@@ -115,6 +115,6 @@ fn show_shades_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, t
     for i in 0..spans.count() {
         let Some(pixels) = to.begin(s, spans, i) else { continue };
         let along = &mut tint.begin(s, spans.values::<T>(i, pixels.skipped));
-        to.show(s, (spans, i, 0), pixels, (Texels::ONE, tint, along), FirstPlace(s));
+        to.show(s, (spans, i, 0), pixels, (Texels::ONE, tint, along), FirstOffset(s));
     }
 }

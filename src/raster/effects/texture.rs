@@ -1,6 +1,6 @@
 //! Texels: texture coordinates over a triangle, the level of a mipmap, and the bytes of the image along a row.
 //!
-//! Eight texel indices are computed at a time, and their texels go straight to their destination: into the frame, or
+//! Eight texel offsets are computed at a time, and their texels go straight to their destination: into the frame, or
 //! into the stages' buffer. Mispredicting the length of a row costs as much as several pixels, so the last few pixels
 //! of a span are written with a mask.
 
@@ -16,8 +16,8 @@ use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8, Level, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::texture::{
-    AffineAlong, LevelTexels, PairValues, PerspectiveSums, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, Texels,
-    Tint, affine_pair, fill_affine, perspective_along, show_pair, singles_along, singles_pair,
+    AffineAlong, LevelTexels, OffsetLanes, OffsetsAlong, PairValues, PerspectiveSums, StoredAlong, StoredOffsets,
+    Texels, Tint, affine_pair, fill_affine, perspective_along, show_pair, singles_along, singles_pair,
 };
 
 /// Pixels between two exact texture coordinates of [`Mapping::Every16`], and between two choices of a level.
@@ -132,7 +132,7 @@ compiled_for_each_level! {
 
 #[inline(always)]
 fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, image: Texels<'_>, tint: T, to: &mut D) {
-    let places = PlaceLanes::of_level(s, (image, 0));
+    let offsets = OffsetLanes::of_level(s, (image, 0));
     let mut i = 0;
     while i < spans.count() {
         if let Some(pair) = Pair::of::<T, D>(to, spans, i) {
@@ -146,24 +146,24 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
             );
             i += 2;
         } else {
-            show_line((spans, i), spans.affine_start(i), (image, places), tint, to);
+            show_line((spans, i), spans.affine_start(i), (image, offsets), tint, to);
             i += 1;
         }
     }
 }
 
-/// Draws the texels of spans `i` and `i + 1`. `places` returns their indices, four for each.
+/// Draws the texels of spans `i` and `i + 1`. `offsets` returns where they are in the image, four for each.
 #[inline(always)]
 fn show_two<S: Lanes8, T: Tint, D: Destination>(
     s: S,
     (spans, i, pair): (&Spans<'_>, usize, &Pair),
     (image, tint): (Texels<'_>, T),
     to: &mut D,
-    places: impl FnOnce() -> S::I32,
+    offsets: impl FnOnce() -> S::I32,
 ) {
     // The numbers start after the skipped pixels.
     let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
-    show_pair(s, (to.all(), pair.at, pair.stays()), image, (tint, values), places());
+    show_pair(s, (to.all(), pair.at, pair.stays()), image, (tint, values), offsets());
 }
 
 #[inline(always)]
@@ -177,15 +177,15 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     let (has_levels, all) = (image.levels.is_some(), image.all());
     // The level of the previous face, whose set-up is kept.
     let (mut texels, mut shown) = (all[0], 0);
-    let mut places = PlaceLanes::of_level(s, (texels, 0));
+    let mut offsets = OffsetLanes::of_level(s, (texels, 0));
     for i in 0..spans.count() {
         let level = if has_levels { spans.affine_level(i) } else { AffineLevel::default() };
         let [start, step] = spans.affine_start(i);
         if level.level != shown {
             (texels, shown) = (all[level.level as usize % LEVELS], level.level);
-            places = PlaceLanes::of_level(s, (texels, 0));
+            offsets = OffsetLanes::of_level(s, (texels, 0));
         }
-        show_line((spans, i), [level.of(start), level.of(step)], (texels, places), tint, to);
+        show_line((spans, i), [level.of(start), level.of(step)], (texels, offsets), tint, to);
     }
 }
 
@@ -195,14 +195,14 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     (spans, i): (&Spans<'_>, usize),
     line: [[u32; 2]; 2],
-    (image, places): (Texels<'_>, PlaceLanes<S>),
+    (image, offsets): (Texels<'_>, OffsetLanes<S>),
     tint: T,
     to: &mut D,
 ) {
-    let s = places.s;
+    let s = offsets.s;
     let Some(pixels) = to.begin(s, spans, i) else { return };
     let along = &mut tint.begin(s, spans.values::<T>(i, pixels.skipped));
-    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(places, image, line, pixels.skipped));
+    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(offsets, image, line, pixels.skipped));
 }
 
 #[inline(always)]
@@ -213,7 +213,7 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
     tint: T,
     (to, level): (&mut D, Level),
 ) {
-    let places = PlaceLanes::of_level(s, (image, 0));
+    let offsets = OffsetLanes::of_level(s, (image, 0));
     let mut i = 0;
     while i < spans.count() {
         if let Some(pair) = Pair::of::<T, D>(to, spans, i)
@@ -227,8 +227,8 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
                 to,
                 #[inline(always)]
                 || {
-                    let (places, is_unsure) = singles_pair(s, image, [first, second], pair.numbers_f32(s));
-                    if is_unsure { s.load_i32(&exact_pair((spans, i), image, pair.skipped)) } else { places }
+                    let (offsets, is_unsure) = singles_pair(s, image, [first, second], pair.numbers_f32(s));
+                    if is_unsure { s.load_i32(&exact_pair((spans, i), image, pair.skipped)) } else { offsets }
                 },
             );
             i += 2;
@@ -237,12 +237,12 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
         // Testing depths first is no faster here, and slower with SSE2.
         let pixels = to.untested(spans, i);
         // At most 64.
-        show_part((spans, i, 0), pixels, pixels.skipped as usize, ((image, 0), places), tint, (to, level));
+        show_part((spans, i, 0), pixels, pixels.skipped as usize, ((image, 0), offsets), tint, (to, level));
         i += 1;
     }
 }
 
-/// The indices of the first four texels of spans `i` and `i + 1`, where quotients cannot decide.
+/// The offsets of the first four texels of spans `i` and `i + 1`, where quotients cannot decide.
 #[cold]
 #[inline(never)]
 fn exact_pair((spans, i): (&Spans<'_>, usize), image: Texels<'_>, skipped: [u32; 2]) -> [i32; LANES] {
@@ -265,7 +265,7 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
     let (all, last_level) = (&image.all(), image.last());
     // The level of the previous face, whose set-up is kept.
     let mut image = (all[0], 0);
-    let mut places = PlaceLanes::of_level(s, image);
+    let mut offsets = OffsetLanes::of_level(s, image);
     for i in 0..spans.count() {
         let Some(pixels) = to.begin(s, spans, i) else { continue };
         let single = if last_level == 0 { Some(0) } else { spans.single_level(i) };
@@ -276,10 +276,10 @@ fn show_levels_by<S: F32Lanes8, T: Tint, D: Destination>(
         {
             if level != image.1 {
                 image = (all[level as usize % LEVELS], level);
-                places = PlaceLanes::of_level(s, image);
+                offsets = OffsetLanes::of_level(s, image);
             }
             // At most 64.
-            show_in_singles((spans, i, 0), pixels, pixels.skipped as usize, (image, places, sums), tint, to);
+            show_in_singles((spans, i, 0), pixels, pixels.skipped as usize, (image, offsets, sums), tint, to);
             continue;
         }
         let to = (&mut *to, level);
@@ -329,13 +329,13 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
                 level = level_of_16(next);
             }
         }
-        let (place, n) = ((spans, i, before as u32), next.min(end) - first);
+        let (part, n) = ((spans, i, before as u32), next.min(end) - first);
         let image = (all[shown as usize % LEVELS], shown);
         show_part(
-            place,
+            part,
             pixels.part(before, n),
             first,
-            (image, PlaceLanes::of_level(s, image)),
+            (image, OffsetLanes::of_level(s, image)),
             tint,
             (&mut *to, lanes),
         );
@@ -349,25 +349,25 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
     pixels: DrawnPixels,
     first: usize,
-    (image, places): (LevelTexels<'_>, PlaceLanes<S>),
+    (image, offsets): (LevelTexels<'_>, OffsetLanes<S>),
     tint: T,
     (to, level): (&mut D, Level),
 ) {
     if !IS_COMPACT && let Some(sums) = spans.singles(i) {
-        show_in_singles((spans, i, before), pixels, first, (image, places, sums), tint, to);
+        show_in_singles((spans, i, before), pixels, first, (image, offsets, sums), tint, to);
     } else {
         // A closure that moves, so that nothing that the other loops use has to be in memory.
-        places.s.apart(
+        offsets.s.apart(
             #[inline(always)]
             move || {
                 // At most 64.
-                let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
+                let along = &mut tint.begin(offsets.s, spans.values::<T>(i, first as u32));
                 let all = StoredAlong::new(
-                    places.s,
+                    offsets.s,
                     #[inline(always)]
-                    |places| places_in_doubles(level, (spans, i), image, (first, first + pixels.length), places),
+                    |offsets| offsets_in_doubles(level, (spans, i), image, (first, first + pixels.length), offsets),
                 );
-                to.show(places.s, (spans, i, before), pixels, (image.0, tint, along), all);
+                to.show(offsets.s, (spans, i, before), pixels, (image.0, tint, along), all);
             },
         );
     }
@@ -379,7 +379,7 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),
     pixels: DrawnPixels,
     first: usize,
-    (image, places, sums): (LevelTexels<'_>, PlaceLanes<S>, PerspectiveSums<f32>),
+    (image, offsets, sums): (LevelTexels<'_>, OffsetLanes<S>, PerspectiveSums<f32>),
     tint: T,
     to: &mut D,
 ) {
@@ -387,19 +387,19 @@ fn show_in_singles<S: F32Lanes8, T: Tint, D: Destination>(
     let mut plane = None;
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
     // At most 64.
-    let along = &mut tint.begin(places.s, spans.values::<T>(i, first as u32));
-    let all = singles_along(places, sums, first, exact);
-    to.show(places.s, (spans, i, before), pixels, (image.0, tint, along), all);
+    let along = &mut tint.begin(offsets.s, spans.values::<T>(i, first as u32));
+    let all = singles_along(offsets, sums, first, exact);
+    to.show(offsets.s, (spans, i, before), pixels, (image.0, tint, along), all);
 }
 
 compiled_for_each_level! {
-    /// Stores the indices of the texels of span `i` in this range of its pixels, by quotients in f64.
+    /// Stores the offsets of the texels of span `i` in this range of its pixels, by quotients in f64.
     #[inline(never)]
-    fn places_in_doubles[][](
+    fn offsets_in_doubles[][](
         of: (&Spans<'_>, usize),
         image: LevelTexels<'_>,
         range: (usize, usize),
-        places: &mut StoredPlaces,
+        offsets: &mut StoredOffsets,
     ) = places_in_doubles_by, up to AVX2;
 }
 
@@ -409,12 +409,12 @@ fn places_in_doubles_by<S: Lanes8>(
     (spans, i): (&Spans<'_>, usize),
     image: LevelTexels<'_>,
     range: (usize, usize),
-    places: &mut StoredPlaces,
+    offsets: &mut StoredOffsets,
 ) {
     let mut plane = None;
     let exact = |first: usize, eight: &mut [i32; LANES]| exact_eight((spans, i), &mut plane, image, first, eight);
-    let mut along = perspective_along(PlaceLanes::of_level(s, image), spans.sums(i), range, exact);
-    for eight in places.iter_mut().take((range.1 - range.0).div_ceil(LANES)) {
+    let mut along = perspective_along(OffsetLanes::of_level(s, image), spans.sums(i), range, exact);
+    for eight in offsets.iter_mut().take((range.1 - range.0).div_ceil(LANES)) {
         s.store_i32(along.next(), eight);
     }
 }
@@ -428,7 +428,7 @@ pub(super) fn exact_level(spans: &Spans<'_>, i: usize, k: i32, last: u32) -> u32
     levels.map_or(0, |levels| level_at(&plane, &levels, span.x + k, span.y, last))
 }
 
-/// The indices of eight texels of span `i`, from its pixel `first` on, where its quotients cannot decide.
+/// The offsets of eight texels of span `i`, from its pixel `first` on, where its quotients cannot decide.
 #[cold]
 #[inline(never)]
 fn exact_eight(
@@ -443,7 +443,7 @@ fn exact_eight(
     if HAS_F64 && !IS_COMPACT {
         let (range, mut is_sure) = ((first, span.len.min(first + LANES)), true);
         let eight_in_f64 =
-            perspective_along(PlaceLanes::of_level(BASELINE, (texels, level)), spans.sums(i), range, |_, _| {
+            perspective_along(OffsetLanes::of_level(BASELINE, (texels, level)), spans.sums(i), range, |_, _| {
                 is_sure = false
             })
             .next();
@@ -453,11 +453,11 @@ fn exact_eight(
         }
     }
     let plane = plane.get_or_insert_with(|| spans.exact_texture(i).0);
-    for (place, k) in eight.iter_mut().zip(first..span.len) {
+    for (offset, k) in eight.iter_mut().zip(first..span.len) {
         // Below 64.
         let [u, v] = plane.at(span.x + k as i32, span.y).map(|coordinate| (coordinate >> level).cast_unsigned());
         // Below 65,536.
-        *place = texels.place(u, v) as i32;
+        *offset = texels.offset(u, v) as i32;
     }
 }
 
@@ -840,21 +840,21 @@ mod tests {
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
                 for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
                     let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
-                    let image = PlaceLanes::of_level(BASELINE, (texels, 0));
+                    let image = OffsetLanes::of_level(BASELINE, (texels, 0));
                     let end = found.span.len.min(LANES);
-                    let mut places = [[-1; LANES]; 2];
+                    let mut offsets = [[-1; LANES]; 2];
                     BASELINE.store_i32(
                         perspective_along(image, found.perspective, (0, end), unsure).next(),
-                        &mut places[0],
+                        &mut offsets[0],
                     );
                     if let Some(singles) = found.singles {
-                        BASELINE.store_i32(singles_along(image, singles, 0, unsure).next(), &mut places[1]);
+                        BASELINE.store_i32(singles_along(image, singles, 0, unsure).next(), &mut offsets[1]);
                     }
                     let mut count = decided.get();
-                    for (count, places) in count.iter_mut().zip(places).filter(|(_, places)| places[0] != -1) {
-                        for (k, place) in places.into_iter().enumerate().take(end) {
+                    for (count, offsets) in count.iter_mut().zip(offsets).filter(|(_, offsets)| offsets[0] != -1) {
+                        for (k, offset) in offsets.into_iter().enumerate().take(end) {
                             let [u, v] = plane.at(found.span.x + k as i32, found.span.y).map(i32::cast_unsigned);
-                            prop_assert_eq!(place, texels.place(u, v) as i32);
+                            prop_assert_eq!(offset, texels.offset(u, v) as i32);
                             *count += 1;
                         }
                     }
@@ -901,32 +901,32 @@ mod tests {
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
                 for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
-                    let (mut places, end) = ([0; LANES], found.span.len.min(LANES));
+                    let (mut offsets, end) = ([0; LANES], found.span.len.min(LANES));
                     // Only the other coordinate may be undecided.
                     let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
                     let image = (texels, 0);
                     let in_f64 =
-                        perspective_along(PlaceLanes::of_level(BASELINE, image), found.perspective, (0, end), unsure)
+                        perspective_along(OffsetLanes::of_level(BASELINE, image), found.perspective, (0, end), unsure)
                             .next();
-                    BASELINE.store_i32(in_f64, &mut places);
-                    let mut all_of_them = std::vec![places];
+                    BASELINE.store_i32(in_f64, &mut offsets);
+                    let mut all_of_them = std::vec![offsets];
                     if let Some(singles) = found.singles {
                         BASELINE.store_i32(
-                            singles_along(PlaceLanes::of_level(BASELINE, image), singles, 0, unsure).next(),
-                            &mut places,
+                            singles_along(OffsetLanes::of_level(BASELINE, image), singles, 0, unsure).next(),
+                            &mut offsets,
                         );
-                        all_of_them.push(places);
+                        all_of_them.push(offsets);
                         in_f32.set(in_f32.get() + 1);
                     }
-                    for places in all_of_them {
-                        prop_assert!(line != [0; 3] || places[0] != -1);
-                        if places[0] == -1 {
+                    for offsets in all_of_them {
+                        prop_assert!(line != [0; 3] || offsets[0] != -1);
+                        if offsets[0] == -1 {
                             continue;
                         }
                         decided.set(decided.get() + 1);
                         let shift = if is_u { 0 } else { 8 };
-                        for place in &places[..end] {
-                            prop_assert_eq!(place >> shift & 255, texel & 255);
+                        for offset in &offsets[..end] {
+                            prop_assert_eq!(offset >> shift & 255, texel & 255);
                         }
                     }
                 }

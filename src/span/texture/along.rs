@@ -6,15 +6,15 @@ use crate::fixed::IS_COMPACT;
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
 
-/// Shows texels in the first `length` pixels of a row: `places` gives the indices of the next
-/// eight, in lanes. The rest of the row does not change.
+/// Shows texels in the first `length` pixels of a row; the rest of the row does not change. `offsets` gives those of the
+/// next eight texels, in lanes.
 #[inline(always)]
 pub(crate) fn show_along<S: Lanes8, T: Tint>(
     s: S,
     (row, length): (&mut [u8], usize),
     texels: Texels<'_>,
     (tint, along): (T, &mut T::Along<S>),
-    mut places: impl PlacesAlong<S>,
+    mut offsets: impl OffsetsAlong<S>,
 ) {
     // Never true: it tells the compiler that there is a last texel, so that the masked index needs no check.
     if texels.bytes.is_empty() {
@@ -23,7 +23,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     let last = texels.bytes.len() - 1;
     let (mut rest, mut left) = (row, length);
     while left > 0 {
-        let places = s.low_words(places.next());
+        let offsets = s.low_words(offsets.next());
         let Some(pixels) = rest.first_chunk::<LANES>() else {
             // At the frame's end.
             let mut pixels = [0; LANES];
@@ -32,7 +32,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
             }
             let rows = tint.rows(s, along, &pixels);
             for (k, pixel) in rest.iter_mut().take(left).enumerate() {
-                *pixel = texel(tint, rows, places, (texels, last), k % LANES);
+                *pixel = texel(tint, rows, offsets, (texels, last), k % LANES);
             }
             return;
         };
@@ -43,10 +43,10 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
         {
             let mask = u32::MAX >> (8 * (FOUR - left));
             let bytes = u32::from_le_bytes([
-                texel(tint, rows, places, (texels, last), 0),
-                texel(tint, rows, places, (texels, last), 1),
-                texel(tint, rows, places, (texels, last), 2),
-                texel(tint, rows, places, (texels, last), 3),
+                texel(tint, rows, offsets, (texels, last), 0),
+                texel(tint, rows, offsets, (texels, last), 1),
+                texel(tint, rows, offsets, (texels, last), 2),
+                texel(tint, rows, offsets, (texels, last), 3),
             ]);
             *row = (bytes & mask | u32::from_le_bytes(*row) & !mask).to_le_bytes();
             return;
@@ -54,13 +54,13 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
         if left < LANES {
             let mask = u64::MAX >> (8 * (LANES - left));
-            let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, (texels, last), k));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, (texels, last), k));
             *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
             return;
         }
         let mut k = 0;
         while k < LANES {
-            block[k] = texel(tint, rows, places, (texels, last), k);
+            block[k] = texel(tint, rows, offsets, (texels, last), k);
             k += 1;
         }
         (rest, left) = (behind, left - LANES);
@@ -74,7 +74,7 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     (row, masks): (&mut [u8], &[u64]),
     texels: Texels<'_>,
     (tint, along): (T, &mut T::Along<S>),
-    mut places: impl PlacesAlong<S>,
+    mut offsets: impl OffsetsAlong<S>,
 ) {
     // Never true: see `show_along`.
     if texels.bytes.is_empty() {
@@ -85,10 +85,10 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         if rest.len() < LANES {
             // At the frame's end.
             let rows = tint.rows(s, along, &[0; LANES]);
-            let places = s.low_words(places.next());
+            let offsets = s.low_words(offsets.next());
             for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
                 if stay == 0 {
-                    *pixel = texel(tint, rows, places, (texels, texels.bytes.len() - 1), k % LANES);
+                    *pixel = texel(tint, rows, offsets, (texels, texels.bytes.len() - 1), k % LANES);
                 }
             }
             break;
@@ -97,9 +97,9 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         rest = behind;
         if stays == u64::MAX {
             tint.rows(s, along, block);
-            places.skip();
+            offsets.skip();
         } else {
-            show_block(s, (block, stays), texels, (tint, along), &mut places);
+            show_block(s, (block, stays), texels, (tint, along), &mut offsets);
         }
     }
 }
@@ -111,7 +111,7 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
     (block, stays): (&mut [u8; LANES], u64),
     texels: Texels<'_>,
     (tint, along): (T, &mut T::Along<S>),
-    places: &mut impl PlacesAlong<S>,
+    offsets: &mut impl OffsetsAlong<S>,
 ) {
     // Never true: see `show_along`.
     if texels.bytes.is_empty() {
@@ -121,59 +121,59 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
     // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case
     // extracts its own lanes: all of them, extracted up front, would not fit into the registers.)
     if stays == 0 && !IS_COMPACT {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
         let mut k = 0;
         while k < LANES {
-            block[k] = texel(tint, rows, places, image, k);
+            block[k] = texel(tint, rows, offsets, image, k);
             k += 1;
         }
     } else if stays >> 32 == u64::from(u32::MAX) {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
+        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
         let Some(four) = block.first_chunk_mut() else { return };
         // The lower half.
         let stay = stays as u32;
         let bytes = u32::from_le_bytes([
-            texel(tint, rows, places, image, 0),
-            texel(tint, rows, places, image, 1),
-            texel(tint, rows, places, image, 2),
-            texel(tint, rows, places, image, 3),
+            texel(tint, rows, offsets, image, 0),
+            texel(tint, rows, offsets, image, 1),
+            texel(tint, rows, offsets, image, 2),
+            texel(tint, rows, offsets, image, 3),
         ]);
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     } else {
-        let (rows, places) = (tint.rows(s, along, block), s.low_words(places.next()));
-        let bytes: [u8; LANES] = each!(k => texel(tint, rows, places, image, k));
+        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
+        let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, image, k));
         *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }
 }
 
 /// Shows texels in two spans of up to four pixels, at these indices of the frame or buffer, except for the pixels that
-/// the mask leaves unchanged. `places` are the indices of the texels, four for each span.
+/// the mask leaves unchanged. `offsets` are those of the texels, four for each span.
 #[inline(always)]
 pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     s: S,
     (all, [a, b], stays): (&mut [u8], [usize; 2], u64),
     texels: Texels<'_>,
     (tint, values): (T, PairValues<S>),
-    places: S::I32,
+    offsets: S::I32,
 ) {
     // Never true: see `show_along`.
     if texels.bytes.is_empty() {
         return;
     }
-    let (image, places) = ((texels, texels.bytes.len() - 1), s.low_words(places));
+    let (image, offsets) = ((texels, texels.bytes.len() - 1), s.low_words(offsets));
     // Tints that read pixels are not shown in pairs.
     let rows = tint.rows(s, &mut tint.begin(s, values), &[0; LANES]);
     let low = u32::from_le_bytes([
-        texel(tint, rows, places, image, 0),
-        texel(tint, rows, places, image, 1),
-        texel(tint, rows, places, image, 2),
-        texel(tint, rows, places, image, 3),
+        texel(tint, rows, offsets, image, 0),
+        texel(tint, rows, offsets, image, 1),
+        texel(tint, rows, offsets, image, 2),
+        texel(tint, rows, offsets, image, 3),
     ]);
     let high = u32::from_le_bytes([
-        texel(tint, rows, places, image, 4),
-        texel(tint, rows, places, image, 5),
-        texel(tint, rows, places, image, 6),
-        texel(tint, rows, places, image, 7),
+        texel(tint, rows, offsets, image, 4),
+        texel(tint, rows, offsets, image, 5),
+        texel(tint, rows, offsets, image, 6),
+        texel(tint, rows, offsets, image, 7),
     ]);
     for (at, bytes, stay) in [(a, low, stays as u32), (b, high, (stays >> 32) as u32)] {
         let Some(four) = all.get_mut(at..at + FOUR).and_then(<[u8]>::first_chunk_mut) else { return };
@@ -183,15 +183,15 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
 
 /// Texel `k` of eight, as it is shown. `last` is the index of the last texel.
 #[inline(always)]
-fn texel<T: Tint>(tint: T, rows: T::Rows, places: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
-    tint.show(rows, k, texels.bytes[usize::from(places[k]) & last])
+fn texel<T: Tint>(tint: T, rows: T::Rows, offsets: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
+    tint.show(rows, k, texels.bytes[usize::from(offsets[k]) & last])
 }
 
 /// The number of pixels that are written at once if no more are left.
 pub(crate) const FOUR: usize = LANES / 2;
 
-/// Indices of texels, eight at a time.
-pub(crate) trait PlacesAlong<S: Lanes8> {
+/// Offsets of texels, eight at a time.
+pub(crate) trait OffsetsAlong<S: Lanes8> {
     fn next(&mut self) -> S::I32;
     /// Skips the next eight.
     #[inline(always)]
@@ -203,9 +203,9 @@ pub(crate) trait PlacesAlong<S: Lanes8> {
 /// The texels of a level, and its index.
 pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
 
-/// Computes indices of texels in vectors.
+/// Computes offsets of texels in vectors.
 #[derive(Clone, Copy)]
-pub(crate) struct PlaceLanes<S: Lanes8> {
+pub(crate) struct OffsetLanes<S: Lanes8> {
     pub(crate) s: S,
     columns: S::I32,
     rows: S::I32,
@@ -214,8 +214,8 @@ pub(crate) struct PlaceLanes<S: Lanes8> {
     bits: i32,
 }
 
-impl<S: Lanes8> PlaceLanes<S> {
-    /// Indices in a level of an image, of coordinates in level 0.
+impl<S: Lanes8> OffsetLanes<S> {
+    /// Offsets in a level of an image, of coordinates in level 0.
     #[inline(always)]
     pub(crate) fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
         let columns = (1 << texels.ubits) - 1;
@@ -224,7 +224,7 @@ impl<S: Lanes8> PlaceLanes<S> {
         Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1), bits }
     }
 
-    /// Computes [`Texels::place`] for these coordinates.
+    /// Computes [`Texels::offset`] for these coordinates.
     #[inline(always)]
     pub(super) fn at_coordinates(self, u: S::I32, v: S::I32) -> S::I32 {
         self.at(u, self.s.mul_i32(v, self.width))
@@ -236,7 +236,7 @@ impl<S: Lanes8> PlaceLanes<S> {
         self.s.splat_i32((1 << self.bits) - 1)
     }
 
-    /// Computes [`Texels::place`] for u, and for v times the width, whose lost bits the masks would clear anyway.
+    /// Computes [`Texels::offset`] for u, and for v times the width, whose lost bits the masks would clear anyway.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
@@ -244,9 +244,9 @@ impl<S: Lanes8> PlaceLanes<S> {
     }
 }
 
-/// Indices of texels along a line, as in [`fill_affine`](super::fill_affine).
+/// Offsets of texels along a line, as in [`fill_affine`](super::fill_affine).
 pub(crate) struct AffineAlong<S: Lanes8> {
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     /// u, and v times the width, of the next eight texels; and their change from these to the eight after them.
     at: [S::I32; 2],
     step: [S::I32; 2],
@@ -256,12 +256,12 @@ impl<S: Lanes8> AffineAlong<S> {
     /// The texels from (`u`, `v`) on, with the change per pixel.
     #[inline(always)]
     pub(crate) fn new(
-        places: PlaceLanes<S>,
+        offsets: OffsetLanes<S>,
         texels: Texels<'_>,
         [[u, v], [du, dv]]: [[u32; 2]; 2],
         skipped: u32,
     ) -> Self {
-        let s = places.s;
+        let s = offsets.s;
         // At most 63; the sums are modulo 2³².
         let numbers = s.add_i32(s.load_i32(&NUMBERS), s.splat_i32(skipped.cast_signed()));
         let along = |first: S::I32, step: S::I32| (s.add_i32(first, s.mul_i32(step, numbers)), s.shl_i32(step, 3));
@@ -269,11 +269,11 @@ impl<S: Lanes8> AffineAlong<S> {
         let (u, du) = along(splat(u), splat(du));
         let bits = texels.ubits.cast_signed();
         let (v, dv) = along(s.shl_i32(splat(v), bits), s.shl_i32(splat(dv), bits));
-        Self { places, at: [u, v], step: [du, dv] }
+        Self { offsets, at: [u, v], step: [du, dv] }
     }
 }
 
-/// The indices of the texels with these numbers along two lines, as in [`AffineAlong`].
+/// The offsets of the texels with these numbers along two lines, as in [`AffineAlong`].
 #[inline(always)]
 pub(crate) fn affine_pair<S: Lanes8>(
     s: S,
@@ -284,48 +284,48 @@ pub(crate) fn affine_pair<S: Lanes8>(
     let pair = |a: u32, b: u32| [a.cast_signed(), b.cast_signed()];
     let u = s.add_i32(s.halves_i32(pair(u, u2)), s.mul_i32(s.halves_i32(pair(du, du2)), numbers));
     let v = s.add_i32(s.halves_i32(pair(v, v2)), s.mul_i32(s.halves_i32(pair(dv, dv2)), numbers));
-    PlaceLanes::of_level(s, (texels, 0)).at_coordinates(u, v)
+    OffsetLanes::of_level(s, (texels, 0)).at_coordinates(u, v)
 }
 
-impl<S: Lanes8> PlacesAlong<S> for AffineAlong<S> {
+impl<S: Lanes8> OffsetsAlong<S> for AffineAlong<S> {
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
-        let (s, [u, v], [du, dv]) = (self.places.s, self.at, self.step);
+        let (s, [u, v], [du, dv]) = (self.offsets.s, self.at, self.step);
         self.at = [s.add_i32(u, du), s.add_i32(v, dv)];
-        self.places.at(u, v)
+        self.offsets.at(u, v)
     }
 }
 
-/// Indices of the texels of up to 64 pixels, eight at a time.
-pub(crate) type StoredPlaces = [[i32; LANES]; 8];
+/// Offsets of the texels of up to 64 pixels, eight at a time.
+pub(crate) type StoredOffsets = [[i32; LANES]; 8];
 
 /// Indices that a function computes all at once when the first of them are requested.
 pub(crate) struct StoredAlong<S, F> {
     s: S,
     fill: F,
-    places: StoredPlaces,
+    offsets: StoredOffsets,
     /// The index of the next eight.
     next: usize,
     is_filled: bool,
 }
 
-impl<S: Lanes8, F: FnMut(&mut StoredPlaces)> StoredAlong<S, F> {
+impl<S: Lanes8, F: FnMut(&mut StoredOffsets)> StoredAlong<S, F> {
     #[inline(always)]
     pub(crate) fn new(s: S, fill: F) -> Self {
-        Self { s, fill, places: [[0; LANES]; 8], next: 0, is_filled: false }
+        Self { s, fill, offsets: [[0; LANES]; 8], next: 0, is_filled: false }
     }
 }
 
-impl<S: Lanes8, F: FnMut(&mut StoredPlaces)> PlacesAlong<S> for StoredAlong<S, F> {
+impl<S: Lanes8, F: FnMut(&mut StoredOffsets)> OffsetsAlong<S> for StoredAlong<S, F> {
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
         if !self.is_filled {
             self.is_filled = true;
-            (self.fill)(&mut self.places);
+            (self.fill)(&mut self.offsets);
         }
         let eight = self.next % 8;
         self.skip();
-        self.s.load_i32(&self.places[eight])
+        self.s.load_i32(&self.offsets[eight])
     }
 
     #[inline(always)]
@@ -335,9 +335,9 @@ impl<S: Lanes8, F: FnMut(&mut StoredPlaces)> PlacesAlong<S> for StoredAlong<S, F
 }
 
 /// The first texel again and again.
-pub(crate) struct FirstPlace<S>(pub(crate) S);
+pub(crate) struct FirstOffset<S>(pub(crate) S);
 
-impl<S: Lanes8> PlacesAlong<S> for FirstPlace<S> {
+impl<S: Lanes8> OffsetsAlong<S> for FirstOffset<S> {
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
         self.0.splat_i32(0)

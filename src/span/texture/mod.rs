@@ -23,7 +23,7 @@ use core::fmt;
 
 #[cfg(feature = "alloc")]
 pub(crate) use self::along::{
-    AffineAlong, FOUR, FirstPlace, LevelTexels, PlaceLanes, PlacesAlong, StoredAlong, StoredPlaces, affine_pair,
+    AffineAlong, FOUR, FirstOffset, LevelTexels, OffsetLanes, OffsetsAlong, StoredAlong, StoredOffsets, affine_pair,
     show_along, show_block, show_masked, show_pair,
 };
 #[cfg(feature = "internals")]
@@ -88,13 +88,13 @@ impl<'a> Texels<'a> {
     #[must_use]
     #[inline]
     pub fn at(self, u: u32, v: u32) -> u8 {
-        self.bytes[self.place(u, v)]
+        self.bytes[self.offset(u, v)]
     }
 
-    /// The index of the texel, below the length. If the compiler knows that the bytes are not empty, it sees this bound
+    /// The offset of the texel, below the length. If the compiler knows that the bytes are not empty, it sees this bound
     /// from the last mask, and omits the bounds check (with everything in usize; with a u32 it does not).
     #[inline]
-    pub(crate) fn place(self, u: u32, v: u32) -> usize {
+    pub(crate) fn offset(self, u: u32, v: u32) -> usize {
         let last = self.bytes.len() - 1;
         let columns = (1 << self.ubits) - 1;
         // The masks clear whatever a narrow usize cuts off.

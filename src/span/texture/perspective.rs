@@ -1,7 +1,7 @@
 //! Texels in exact perspective: coordinates are quotients, in f32, f64 or integers, whichever decides first.
 
 use super::Texels;
-use super::along::{PlaceLanes, PlacesAlong, show_along};
+use super::along::{OffsetLanes, OffsetsAlong, show_along};
 use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8};
@@ -31,8 +31,8 @@ pub fn fill_perspective(
     dd: i128,
 ) {
     // Modulo 2³²: the mask keeps fewer bits than that.
-    let exact_place = |[u, v]: [i128; 2], divisor: i128| {
-        texels.place(floor_of_wide(u, divisor.max(1)) as u32, floor_of_wide(v, divisor.max(1)) as u32)
+    let exact_offset = |[u, v]: [i128; 2], divisor: i128| {
+        texels.offset(floor_of_wide(u, divisor.max(1)) as u32, floor_of_wide(v, divisor.max(1)) as u32)
     };
     let ([u, v], [du, dv]) = (numerators, steps);
     // No more pixels than a row of a frame has.
@@ -44,14 +44,14 @@ pub fn fill_perspective(
         let sums = PerspectiveSums { numerators: [line(u, du), line(v, dv)], divisors: line(d, dd), base: [0; 2] };
         let n = piece.len();
         let exact = |first: usize, eight: &mut [i32; LANES]| {
-            for (place, k) in eight.iter_mut().zip(first..n) {
+            for (offset, k) in eight.iter_mut().zip(first..n) {
                 let [u, v, d] = [advanced(u, du, k), advanced(v, dv, k), advanced(d, dd, k)];
                 // Below 65,536.
-                *place = exact_place([u, v], d) as i32;
+                *offset = exact_offset([u, v], d) as i32;
             }
         };
-        let places = perspective_along(PlaceLanes::of_level(BASELINE, (texels, 0)), sums, (0, n), exact);
-        show_along(BASELINE, (piece, n), texels, ((), &mut ()), places);
+        let offsets = perspective_along(OffsetLanes::of_level(BASELINE, (texels, 0)), sums, (0, n), exact);
+        show_along(BASELINE, (piece, n), texels, ((), &mut ()), offsets);
     }
 }
 
@@ -75,40 +75,40 @@ impl PerspectiveSums<f64> {
     const NONE: Self = Self { numerators: [[0.0; 2]; 2], divisors: [0.0; 2], base: [0; 2] };
 }
 
-/// The indices of the texels from number `range.0` to `range.1` of a span, at most 64, by [`Quotients`]. Where a
-/// quotient cannot decide, `exact` stores the indices of eight texels, from the one with the given number on.
+/// The offsets of the texels from number `range.0` to `range.1` of a span, at most 64, by [`Quotients`]. Where a
+/// quotient cannot decide, `exact` stores the offsets of eight texels, from the one with the given number on.
 #[inline(always)]
 pub(crate) fn perspective_along<S: Lanes8>(
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     sums: PerspectiveSums<f64>,
     range: (usize, usize),
     exact: impl FnMut(usize, &mut [i32; LANES]),
-) -> impl PlacesAlong<S> {
+) -> impl OffsetsAlong<S> {
     let sums = if HAS_F64 { sums } else { PerspectiveSums::NONE };
-    let s = places.s;
-    let mut quotients = Quotients::new(places, &sums, range.1);
+    let s = offsets.s;
+    let mut quotients = Quotients::new(offsets, &sums, range.1);
     quotients.are_sure &= HAS_F64;
     // At most 64.
     let numbers = s.add_i32(s.splat_i32(range.0 as i32), s.load_i32(&NUMBERS));
-    PerspectiveAlong { places: quotients.places, quotients, numbers, first: range.0, exact }
+    PerspectiveAlong { offsets: quotients.offsets, quotients, numbers, first: range.0, exact }
 }
 
-/// Computes indices as [`perspective_along`] does, by quotients in f32, where [`fits_singles`] allows them.
+/// Computes offsets as [`perspective_along`] does, by quotients in f32, where [`fits_singles`] allows them.
 #[inline(always)]
 pub(crate) fn singles_along<S: F32Lanes8>(
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     sums: PerspectiveSums<f32>,
     first: usize,
     exact: impl FnMut(usize, &mut [i32; LANES]),
-) -> impl PlacesAlong<S> {
+) -> impl OffsetsAlong<S> {
     const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let (s, quotients) = (places.s, Singles::new(places, &sums));
+    let (s, quotients) = (offsets.s, Singles::new(offsets, &sums));
     // At most 64.
     let numbers = s.add_f32(s.splat_f32(first as f32), s.load_f32(&NUMBERS));
-    PerspectiveAlong { places: quotients.places, quotients, numbers, first, exact }
+    PerspectiveAlong { offsets: quotients.offsets, quotients, numbers, first, exact }
 }
 
-/// The indices of the texels with these numbers along two spans, by quotients in f32 as in [`singles_along`]; and
+/// The offsets of the texels with these numbers along two spans, by quotients in f32 as in [`singles_along`]; and
 /// whether any of them is undecided.
 #[inline(always)]
 pub(crate) fn singles_pair<S: F32Lanes8>(
@@ -121,7 +121,7 @@ pub(crate) fn singles_pair<S: F32Lanes8>(
     let line = |a: [f32; 2], b: [f32; 2]| [s.halves_f32([a[0], b[0]]), s.halves_f32([a[1], b[1]])];
     let margin = s.splat_i32(SINGLES_MARGIN);
     let quotients = Singles {
-        places: PlaceLanes::of_level(s, (texels, 0)),
+        offsets: OffsetLanes::of_level(s, (texels, 0)),
         numerators: [line(au, bu), line(av, bv)],
         divisors: line(ad, bd),
         more: [
@@ -130,12 +130,12 @@ pub(crate) fn singles_pair<S: F32Lanes8>(
         ],
     };
     let ([u, v], is_unsure) = quotients.at(s, numbers);
-    (quotients.places.at_coordinates(u, v), is_unsure)
+    (quotients.offsets.at_coordinates(u, v), is_unsure)
 }
 
 /// A position along a span of [`perspective_along`].
 struct PerspectiveAlong<S: Lanes8, Q: QuotientsAlong<S>, E> {
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     quotients: Q,
     /// The numbers of the next eight texels.
     numbers: Q::Numbers,
@@ -144,17 +144,19 @@ struct PerspectiveAlong<S: Lanes8, Q: QuotientsAlong<S>, E> {
     exact: E,
 }
 
-impl<S: Lanes8, Q: QuotientsAlong<S>, E: FnMut(usize, &mut [i32; LANES])> PlacesAlong<S> for PerspectiveAlong<S, Q, E> {
+impl<S: Lanes8, Q: QuotientsAlong<S>, E: FnMut(usize, &mut [i32; LANES])> OffsetsAlong<S>
+    for PerspectiveAlong<S, Q, E>
+{
     #[inline(always)]
     fn next(&mut self) -> S::I32 {
-        let (s, numbers, first) = (self.places.s, self.numbers, self.first);
+        let (s, numbers, first) = (self.offsets.s, self.numbers, self.first);
         self.skip();
         // Without f64 no quotient decides, and each would cost a microcontroller thousands of
         // instructions.
         if HAS_F64 {
             let ([u, v], is_unsure) = self.quotients.at(s, numbers);
             if !is_unsure {
-                return self.places.at_coordinates(u, v);
+                return self.offsets.at_coordinates(u, v);
             }
         }
         let mut eight = [0; LANES];
@@ -165,7 +167,7 @@ impl<S: Lanes8, Q: QuotientsAlong<S>, E: FnMut(usize, &mut [i32; LANES])> Places
     #[inline(always)]
     fn skip(&mut self) {
         self.first += LANES;
-        self.numbers = self.quotients.next(self.places.s, self.numbers);
+        self.numbers = self.quotients.next(self.offsets.s, self.numbers);
     }
 }
 
@@ -193,7 +195,7 @@ trait QuotientsAlong<S: Lanes8> {
 ///    and the product: less than 2³²·ε·(24R + 3) altogether.
 /// 3. For R ≤ 2¹⁵ that is 0.38. If R is larger, no quotient decides.
 struct Quotients<S: Lanes8> {
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     sums: PerspectiveSums<f64>,
     /// The number of the pixel after the last.
     end: S::I32,
@@ -204,7 +206,7 @@ struct Quotients<S: Lanes8> {
 impl<S: Lanes8> Quotients<S> {
     /// The quotients of the first `end` pixels of a row, at most [`PIECE`].
     #[inline(always)]
-    fn new(places: PlaceLanes<S>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
+    fn new(offsets: OffsetLanes<S>, sums: &PerspectiveSums<f64>, end: usize) -> Self {
         let mut are_sure = HAS_F64;
         if HAS_F64 {
             let [d, dd] = sums.divisors;
@@ -214,15 +216,15 @@ impl<S: Lanes8> Quotients<S> {
             // False for NaN too.
             are_sure = least * MAX_RATIO >= greatest;
         }
-        Self { places, sums: *sums, end: places.s.splat_i32(end as i32), are_sure }
+        Self { offsets, sums: *sums, end: offsets.s.splat_i32(end as i32), are_sure }
     }
 
     /// The coordinates at pixels with these numbers, and whether any of them is undecided.
     #[inline(always)]
     fn coordinates(&self, numbers: S::I32) -> ([S::I32; 2], bool) {
         let PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base, .. } = self.sums;
-        let s = self.places.s;
-        let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), self.places.fraction(), s.splat_i32(0));
+        let s = self.offsets.s;
+        let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), self.offsets.fraction(), s.splat_i32(0));
         let k = s.to_f64(numbers);
         let reciprocal = s.div(s.splat_f64(1.0), s.mul_add(k, s.splat_f64(dd), s.splat_f64(d)));
         // Modulo 2³². Lanes beyond the last may hold anything.
@@ -277,7 +279,7 @@ pub(crate) fn fits_singles<S: Lanes8>(s: S, range: S::F64, [least, greatest]: [S
 
 /// Quotients in f32, where [`fits_singles`] allows them.
 struct Singles<S: F32Lanes8> {
-    places: PlaceLanes<S>,
+    offsets: OffsetLanes<S>,
     numerators: [[S::F32; 2]; 2],
     divisors: [S::F32; 2],
     /// The base and the margin.
@@ -286,12 +288,12 @@ struct Singles<S: F32Lanes8> {
 
 impl<S: F32Lanes8> Singles<S> {
     #[inline(always)]
-    fn new(places: PlaceLanes<S>, sums: &PerspectiveSums<f32>) -> Self {
-        let s = places.s;
+    fn new(offsets: OffsetLanes<S>, sums: &PerspectiveSums<f32>) -> Self {
+        let s = offsets.s;
         let ([[u, du], [v, dv]], [d, dd]) = (sums.numerators, sums.divisors);
         let margin = s.splat_i32(SINGLES_MARGIN);
         Self {
-            places,
+            offsets,
             numerators: [[s.splat_f32(u), s.splat_f32(du)], [s.splat_f32(v), s.splat_f32(dv)]],
             divisors: [s.splat_f32(d), s.splat_f32(dd)],
             more: [s.add_i32(s.splat_i32(sums.base[0]), margin), s.add_i32(s.splat_i32(sums.base[1]), margin)],
@@ -310,7 +312,7 @@ impl<S: F32Lanes8> QuotientsAlong<S> for Singles<S> {
         let u = s.nearest_f32(s.mul_f32(s.mul_add_f32(k, du, u), reciprocal));
         let v = s.nearest_f32(s.mul_f32(s.mul_add_f32(k, dv, v), reciprocal));
         let (u, v) = (s.add_i32(u, self.more[0]), s.add_i32(v, self.more[1]));
-        let fraction = self.places.fraction();
+        let fraction = self.offsets.fraction();
         let least = s.min_i32(s.and_i32(u, fraction), s.and_i32(v, fraction));
         ([u, v], s.to_bitmask(s.is_greater(s.splat_i32(2 * SINGLES_MARGIN), least)) != 0)
     }
@@ -331,7 +333,7 @@ mod tests {
     /// How far the quotients in f32 are off at pixel `k` of a row, in 1/65,536 of a texel.
     fn off<S: F32Lanes8>(s: S, sums: &PerspectiveSums<f32>, k: usize, exact: [f64; 2]) -> f64 {
         let texels = Texels::new(&[0], 0, 0).expect("a texel");
-        let quotients = Singles::new(PlaceLanes::of_level(s, (texels, 0)), sums);
+        let quotients = Singles::new(OffsetLanes::of_level(s, (texels, 0)), sums);
         let ([u, v], is_unsure) = quotients.at(s, s.splat_f32(k as f32));
         let (mut lanes, mut most) = ([0; LANES], 0.0_f64);
         let mut is_near = false;
