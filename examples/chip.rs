@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Material, Object, ObjectSun, Placement, Sun, Vector, VertexStage,
     View, average_normals,
 };
 use mode13h::palette::Ramp;
@@ -34,9 +34,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let view = View::new(&camera, lens)?;
     let suns = [Sun { direction: at(4, 6, 10), intensity: I16F16::ONE }];
     let bits = |share: i32| I16F16::from_bits(65_536 * share / 100);
-    let paints = [Paint { ambient: bits(15), diffuse: bits(85), ramp: Ramp::WHOLE }];
+    let materials = [Material { ambient: bits(15), diffuse: bits(85), ramp: Ramp::WHOLE }];
     let angles = [BinaryAngle::default(), BinaryAngle::from_degrees(30), BinaryAngle::default()];
-    let object = Object { mesh, placement: Placement { angles, ..Placement::default() }, paints: &paints };
+    let object = Object { mesh, placement: Placement { angles, ..Placement::default() }, materials: &materials };
     let (mut lit, mut beams) = ([LitVertex::default(); 5], [ObjectSun::default(); 1]);
     let stage = VertexStage::new(&view, object, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams)?;
 

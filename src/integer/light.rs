@@ -41,7 +41,7 @@ pub struct ObjectSun {
 
 /// A surface's response to light, and its ramp in the palette.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
-pub struct Paint {
+pub struct Material {
     /// ka·Ia: the ambient light that the surface reflects.
     pub ambient: I16F16,
     /// kd: the share of a light that it reflects in all directions.
@@ -50,7 +50,7 @@ pub struct Paint {
     pub ramp: Ramp,
 }
 
-impl Paint {
+impl Material {
     /// The shades of both sides: first that of the side that the unit `normal` points out of.
     #[inline]
     pub(super) fn shades(&self, beams: &[ObjectSun], normal: Vector) -> (U8F8, U8F8) {

@@ -129,7 +129,7 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
 
     /// Sets the surface of each vertex and each triangle.
     ///
-    /// A surface's number is the index of its [`Paint`](super::Paint).
+    /// A surface's number is the index of its [`Material`](super::Material).
     ///
     /// # Errors
     /// A number of entries that differs from the number of vertices or triangles.

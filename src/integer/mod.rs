@@ -2,7 +2,7 @@
 //!
 //! The Hungarian tutorial uses fixed point throughout, with unit vectors of length 65,536. Here a
 //! whole frame is computed like that: rotation, projection, normals, light, clipping. The path
-//! needs neither `std` nor an allocator, and links no soft-float routine: meshes, paints and suns
+//! needs neither `std` nor an allocator, and links no soft-float routine: meshes, materials and suns
 //! are borrowed slices, the caller provides storage for vertices, and triangles go to a closure. So
 //! a chip without a floating-point unit can draw what the f32 path of `render` draws, in the same
 //! stages and with the same conventions.
@@ -11,7 +11,7 @@
 //!
 //! ```
 //! use mode13h::fixed::I16F16;
-//! use mode13h::integer::{BinaryAngle, Camera, FixedMesh, Lens, Object, Paint, Placement, VertexStage, Sun, View};
+//! use mode13h::integer::{BinaryAngle, Camera, FixedMesh, Lens, Material, Object, Placement, Sun, VertexStage, View};
 //! use mode13h::settings::Shading;
 //! use mode13h::palette::Ramp;
 //! use mode13h::raster::{Frame, Raster};
@@ -24,9 +24,9 @@
 //! let lens = Lens::new(320, 200, (5, 6), BinaryAngle::from_degrees(40))?;
 //! let camera = Camera { eye: at(0, 0, 4), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
 //! let view = View::new(&camera, lens)?;
-//! let paint = Paint { ambient: I16F16::default(), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
+//! let material = Material { ambient: I16F16::default(), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
 //! let placement = Placement { angles: [BinaryAngle::default(), BinaryAngle::from_degrees(45), BinaryAngle::default()], ..Placement::default() };
-//! let object = Object { mesh, placement, paints: &[paint] };
+//! let object = Object { mesh, placement, materials: &[material] };
 //! let suns = [Sun { direction: at(0, 0, 1), intensity: I16F16::ONE }];
 //!
 //! let (mut lit, mut beams) = ([Default::default(); 3], [Default::default(); 1]);
@@ -47,7 +47,7 @@
 // | `vector` | unit vectors, the rotation of an object |
 // | `mesh` | a mesh in 16.16; averaged normals |
 // | `view` | camera and object to one matrix; projection; the one rounding |
-// | `light` | suns, paints, the shade of a vertex |
+// | `light` | suns, materials, the shade of a vertex |
 // | `clip` | near plane and guard band |
 // | `stage` | an object's vertices, lit and projected, then its faces |
 
@@ -62,14 +62,14 @@ mod view;
 use core::fmt;
 
 pub use angle::BinaryAngle;
-pub use light::{ObjectSun, Paint, Sun};
+pub use light::{Material, ObjectSun, Sun};
 pub use mesh::{FixedMesh, average_normals, face_normal};
 pub use mesh::{FixedMeshParts, VertexIndex};
 pub use stage::{Faces, LitVertex, Object, VertexStage};
 pub use vector::{Vector, turn, unit_vector};
 pub use view::{Camera, Lens, Placement, View};
 
-/// The errors of the integer path: of a mesh, a camera, lights or paints.
+/// The errors of the integer path: of a mesh, a camera, lights or materials.
 #[derive(Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum IntegerError {
@@ -88,8 +88,8 @@ pub enum IntegerError {
     TooFar,
     /// There are more than 4,096 suns, or one has no direction.
     Light,
-    /// There are fewer paints than the mesh has surfaces.
-    Paints {
+    /// There are fewer materials than the mesh has surfaces.
+    Materials {
         /// The number needed.
         needed: usize,
     },
@@ -135,7 +135,7 @@ impl IntegerError {
             Self::Scale => "an object's scale must not be negative",
             Self::TooFar => "an object reaches farther than 65,535 units from the eye",
             Self::Light => "a sun must have a direction, and there may be 4,096 of them",
-            Self::Paints { .. } => "each surface of a mesh must have a material",
+            Self::Materials { .. } => "each surface of a mesh must have a material",
             Self::Room { .. } => "there is too little room for vertices or lights",
             Self::Count { .. } => "the slices of a mesh must fit together",
             Self::Position { .. } => "each vertex of a mesh must lie within ±32,767",
@@ -149,7 +149,7 @@ impl fmt::Display for IntegerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.what())?;
         match self {
-            Self::Paints { needed } | Self::Room { needed } => write!(f, ": {needed} are needed"),
+            Self::Materials { needed } | Self::Room { needed } => write!(f, ": {needed} are needed"),
             Self::Count { what, given, needed } => write!(f, ": {given} {what} given where {needed} are needed"),
             Self::Position { vertex } | Self::NormalNotUnit { vertex } => write!(f, ": vertex {vertex} is not"),
             Self::IndexOutOfRange { triangle } => write!(f, ": triangle {triangle} does not"),

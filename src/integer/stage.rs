@@ -2,7 +2,7 @@
 
 use super::IntegerError;
 use super::clip::{Corner, clip};
-use super::light::{ObjectSun, Paint, Sun};
+use super::light::{Material, ObjectSun, Sun};
 use super::mesh::{FixedMesh, VertexIndex, face_normal};
 use super::view::{Homogeneous, ObjectView, Placement, View};
 use crate::fixed::U8F8;
@@ -10,15 +10,15 @@ use crate::raster::clip::doubled_area;
 use crate::raster::{Interpolation, Vertex};
 use crate::settings::Shading;
 
-/// A mesh with its placement, and one paint for each of its surfaces.
+/// A mesh with its placement, and one material for each of its surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Object<'a, I: VertexIndex = u16> {
     /// The mesh.
     pub mesh: FixedMesh<'a, I>,
     /// Its position, rotation and scale in the scene.
     pub placement: Placement,
-    /// The paints, one for each surface.
-    pub paints: &'a [Paint],
+    /// The materials, one for each surface.
+    pub materials: &'a [Material],
 }
 
 /// Storage for a lit and projected vertex.
@@ -62,7 +62,7 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
     /// faces or need floats) are replaced by the default.
     ///
     /// # Errors
-    /// Too little storage; a surface without a paint; a scale below 0; an object that may reach farther than 65,535
+    /// Too little storage; a surface without a material; a scale below 0; an object that may reach farther than 65,535
     /// units away; more than 4,096 suns, or one without direction.
     pub fn new(
         view: &View,
@@ -72,12 +72,12 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
         lit: &'a mut [LitVertex],
         beams: &'a mut [ObjectSun],
     ) -> Result<Self, IntegerError> {
-        let Object { mesh, placement, paints } = &object;
+        let Object { mesh, placement, materials } = &object;
         if suns.len() > Sun::MAX_COUNT {
             return Err(IntegerError::Light);
         }
-        if paints.len() < mesh.surfaces {
-            return Err(IntegerError::Paints { needed: mesh.surfaces });
+        if materials.len() < mesh.surfaces {
+            return Err(IntegerError::Materials { needed: mesh.surfaces });
         }
         let lit = lit.get_mut(..mesh.vertices()).ok_or(IntegerError::Room { needed: mesh.vertices() })?;
         let beams = beams.get_mut(..suns.len()).ok_or(IntegerError::Room { needed: suns.len() })?;
@@ -91,7 +91,7 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
             let vertex = view.project(view.homogeneous(position));
             let (front, back) = match shading {
                 Shading::Flat => (U8F8::default(), U8F8::default()),
-                _ => paints[mesh.vertex_surface(i)].shades(beams, normal),
+                _ => materials[mesh.vertex_surface(i)].shades(beams, normal),
             };
             *place = LitVertex {
                 vertex: vertex.unwrap_or_default().with_shade(front),
@@ -174,8 +174,8 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
                 let [a, b, c] = indices.map(|i| mesh.positions[i]);
                 // A face without area has no normal; rounded, it may still cover a pixel.
                 let normal = face_normal(a, b, c).unwrap_or(mesh.normals[indices[0]]);
-                let paint = &self.object.paints[mesh.triangle_surface(face)];
-                let (front, back) = paint.shades(self.beams, normal);
+                let material = &self.object.materials[mesh.triangle_surface(face)];
+                let (front, back) = material.shades(self.beams, normal);
                 Interpolation::Flat(if turned { back } else { front }.nearest())
             }
             shading => shading.interpolation(),

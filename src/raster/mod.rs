@@ -53,9 +53,9 @@ pub mod effects;
 mod error;
 pub(crate) mod frame;
 pub(crate) mod interpolation;
-mod paint;
 pub(crate) mod pick;
 pub(crate) mod reference;
+mod row_shader;
 mod rows;
 #[cfg(feature = "alloc")]
 pub(crate) mod scan_line;

@@ -12,7 +12,7 @@ use super::stats::Stats;
 use super::{RenderError, Screen};
 use crate::fixed::I16F16;
 use crate::integer::{
-    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector,
+    self, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, ObjectSun, Placement, Sun, Vector,
     VertexStage, View,
 };
 use crate::light::{Light, Material};
@@ -108,8 +108,8 @@ fn sun(light: &Light) -> Option<Sun> {
     Some(Sun { direction: direction(towards.to_array().map(f64::from)), intensity })
 }
 
-fn paint(material: &Material, scene: &Scene) -> Option<Paint> {
-    Some(Paint {
+fn material_of(material: &Material, scene: &Scene) -> Option<integer::Material> {
+    Some(integer::Material {
         ambient: fixed(f64::from(material.ambient) * f64::from(scene.ambient))?,
         diffuse: fixed(material.diffuse.into())?,
         ramp: material.ramp.in_palette(scene.palette.as_ref()),
@@ -122,7 +122,7 @@ struct Prepared {
     converted: usize,
     exponent: i32,
     placement: Placement,
-    paints: core::ops::Range<usize>,
+    materials: core::ops::Range<usize>,
 }
 
 /// The integer path's part of a renderer: converted meshes, and the current scene.
@@ -132,7 +132,7 @@ pub(super) struct IntegerPath {
     /// The view, and what it was made from: the camera and the focal lengths.
     view: Option<(View, Camera, [I16F16; 2])>,
     objects: Vec<Prepared>,
-    paints: Vec<Paint>,
+    materials: Vec<integer::Material>,
     suns: Vec<Sun>,
 }
 
@@ -186,20 +186,21 @@ impl IntegerPath {
         let lens = Lens::with_focal_lengths(screen.width, screen.height, [fx, fy]).map_err(of_camera)?;
         let view = View::new(&camera, lens).map_err(of_camera)?;
 
-        self.paints.clear();
+        self.materials.clear();
         for (index, object) in scene.objects().iter().enumerate() {
             if object.parent.is_some_and(|parent| scene.get(parent).is_some()) {
                 return Err(RenderError::of_object(scene, index, "it has a parent, which 16.16 does not support"));
             }
-            let first = self.paints.len();
+            let first = self.materials.len();
             for material in &object.materials {
                 let what = "a number of its materials, times the ambient light, is beyond ±32,767: too much for 16.16";
-                self.paints.push(paint(material, scene).ok_or_else(|| RenderError::of_object(scene, index, what))?);
+                self.materials
+                    .push(material_of(material, scene).ok_or_else(|| RenderError::of_object(scene, index, what))?);
             }
             let scaled = f64::from(object.scale);
             let scale_exponent = if scaled > 0.0 { libm::ilogb(scaled) } else { 0 };
             let prepared = &mut self.objects[index];
-            prepared.paints = first..self.paints.len();
+            prepared.materials = first..self.materials.len();
             prepared.exponent = self.meshes[prepared.converted].exponent + scale_exponent + exponent;
             prepared.placement = Placement {
                 // No farther than the farthest object, so it fits.
@@ -226,7 +227,7 @@ impl IntegerPath {
                 self.meshes.push(Converted::new(object));
                 self.meshes.len() - 1
             });
-            self.objects.push(Prepared { converted, exponent: 0, placement: Placement::default(), paints: 0..0 });
+            self.objects.push(Prepared { converted, exponent: 0, placement: Placement::default(), materials: 0..0 });
         }
     }
 
@@ -239,7 +240,7 @@ impl IntegerPath {
     pub(super) fn object<'a>(&'a self, index: usize, object: &'a scene::Object) -> Option<Object<'a, u32>> {
         let prepared = self.objects.get(index)?;
         let mesh = fixed_mesh(&self.meshes, prepared, object);
-        Some(Object { mesh, placement: prepared.placement, paints: &self.paints[prepared.paints.clone()] })
+        Some(Object { mesh, placement: prepared.placement, materials: &self.materials[prepared.materials.clone()] })
     }
 
     /// Calls `triangle` for each triangle of an object of the prepared scene.

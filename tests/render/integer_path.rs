@@ -6,7 +6,7 @@ use mode13h::Angle;
 use mode13h::fixed::I16F16;
 use mode13h::glam::Vec3;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, Object, Paint, Placement, Sun, Vector, VertexStage, View,
+    BinaryAngle, Camera, FixedMesh, IntegerError, Lens, Material, Object, Placement, Sun, Vector, VertexStage, View,
     average_normals, face_normal, turn, unit_vector,
 };
 use mode13h::mesh::{Mesh, shapes};
@@ -190,7 +190,7 @@ fn the_turn_is_the_f64_turn() {
 
 // ------------------------------------------------------------------ transform and projection
 
-const PAINT: Paint = Paint { ambient: I16F16::from_bits(0), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
+const MATERIAL: Material = Material { ambient: I16F16::from_bits(0), diffuse: I16F16::ONE, ramp: Ramp::WHOLE };
 
 /// The triangles of a mesh as passed to the raster.
 fn triangles(
@@ -249,7 +249,8 @@ fn r13_the_integer_paths_rounding_against_big_rationals() {
         let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false).expect("legal");
         // A mesh in finer units: X, Y and W are each rounded to the nearest 1/65,536, halves upward.
         let finer = random.one_of(&[0, 0, 1, 2, 5]);
-        let object = Object { mesh: mesh.with_exponent(-finer), placement: Placement::default(), paints: &[PAINT] };
+        let object =
+            Object { mesh: mesh.with_exponent(-finer), placement: Placement::default(), materials: &[MATERIAL] };
         let drawn = triangles(&view, object, &[]).expect("legal");
         let units = |c: i32| ((i64::from(c) << 16) + (1 << (15 + finer))).div_euclid(1 << (16 + finer)) as i32;
         let expected = corners.map(|[x, y, z]| {
@@ -332,7 +333,7 @@ fn vertices_are_where_f64_has_them() {
             angles: steps.map(BinaryAngle::from),
             scale: I16F16::from_bits(scale),
         };
-        let object = Object { mesh: mesh.with_exponent(exponent), placement, paints: &[PAINT] };
+        let object = Object { mesh: mesh.with_exponent(exponent), placement, materials: &[MATERIAL] };
         let drawn = triangles(&view, object, &[]).expect("within reach");
         let [(vertices, _)] = &drawn[..] else { continue };
 
@@ -402,7 +403,7 @@ fn n4_shades_against_big_rationals() {
         let entries = random.within(1, 256) as u16;
         let first = random.within(0, 256 - i64::from(entries)).min(255) as u8;
         let ramp = Ramp::new(first, entries).expect("within the palette");
-        let paint = Paint { ambient: I16F16::from_bits(ambient), diffuse: I16F16::from_bits(diffuse), ramp };
+        let material = Material { ambient: I16F16::from_bits(ambient), diffuse: I16F16::from_bits(diffuse), ramp };
         let lights: Vec<Sun> = suns
             .iter()
             .map(|&(side, intensity)| Sun {
@@ -410,7 +411,7 @@ fn n4_shades_against_big_rationals() {
                 intensity: I16F16::from_bits(intensity),
             })
             .collect();
-        let object = Object { mesh, placement: Placement::default(), paints: &[paint] };
+        let object = Object { mesh, placement: Placement::default(), materials: &[material] };
         let drawn = triangles(&view, object, &lights).expect("legal");
         // I = ambient + diffuse · Σ intensity · max(0, cosine), clamped once.
         let mut sum = BigInt::from(0);
@@ -425,7 +426,7 @@ fn n4_shades_against_big_rationals() {
         let half = BigRational::new(1.into(), 2.into());
         let above = (i * BigRational::from_integer((i64::from(entries - 1) * 256).into()) + half).floor().to_integer();
         let expected = above + i64::from(first) * 256;
-        assert_eq!(BigInt::from(drawn[0].0[0].shade().to_bits()), expected, "{paint:?} {lights:?}");
+        assert_eq!(BigInt::from(drawn[0].0[0].shade().to_bits()), expected, "{material:?} {lights:?}");
     }
 }
 
@@ -451,7 +452,7 @@ fn c1_cuts_lie_on_the_edges_with_their_shades() {
         let normals = [0; 3].map(|_| random.one_of(&tilted));
         let positions = corners.map(bits);
         let mesh = FixedMesh::new(&positions, &normals, &[[0_u16, 1, 2]], false).expect("legal");
-        let object = Object { mesh, placement: Placement::default(), paints: &[PAINT] };
+        let object = Object { mesh, placement: Placement::default(), materials: &[MATERIAL] };
         let drawn = triangles(&view, object, &[sun]).expect("legal");
 
         let at = corners.map(|[x, y, z]| {
@@ -551,7 +552,7 @@ fn what_16_16_cannot_hold_is_refused() {
     check(place(corner, 65_536, 16) == Err(IntegerError::TooFar), "65,536 units of size");
     check(place(corner, i32::MAX, 127) == Err(IntegerError::TooFar), "larger still");
 
-    let object = Object { mesh, placement: Placement::default(), paints: &[PAINT] };
+    let object = Object { mesh, placement: Placement::default(), materials: &[MATERIAL] };
     let sun = Sun { direction: z, intensity: I16F16::ONE };
     let stage = |object, suns: &[Sun], lit, beams| {
         let (mut lit, mut beams) = (vec![Default::default(); lit], vec![Default::default(); beams]);
@@ -560,7 +561,10 @@ fn what_16_16_cannot_hold_is_refused() {
     check(stage(object, &[sun], 1, 1).is_ok(), "enough room");
     check(stage(object, &[sun], 0, 1) == Err(IntegerError::Room { needed: 1 }), "no room for vertices");
     check(stage(object, &[sun], 1, 0) == Err(IntegerError::Room { needed: 1 }), "no room for beams");
-    check(stage(Object { paints: &[], ..object }, &[], 1, 0) == Err(IntegerError::Paints { needed: 1 }), "no paint");
+    check(
+        stage(Object { materials: &[], ..object }, &[], 1, 0) == Err(IntegerError::Materials { needed: 1 }),
+        "no material",
+    );
     check(stage(object, &[sun; 4096], 1, 4096).is_ok(), "4,096 suns");
     check(stage(object, &[sun; 4097], 1, 4097) == Err(IntegerError::Light), "4,097 suns");
     check(stage(object, &[Sun { direction: corner, ..sun }], 1, 1) == Err(IntegerError::Light), "no direction");
@@ -603,7 +607,7 @@ fn r7_any_legal_input_is_quiet() {
             angles: [0; 3].map(|_| BinaryAngle::from(random.next_u64() as u16)),
             scale: I16F16::from_bits((number(&mut random, most).unsigned_abs() >> random.within(0, 31)) as i32),
         };
-        let paint = Paint {
+        let material = Material {
             ambient: I16F16::from_bits(number(&mut random, most)),
             diffuse: I16F16::from_bits(number(&mut random, most)),
             ramp: Ramp::WHOLE,
@@ -615,7 +619,7 @@ fn r7_any_legal_input_is_quiet() {
         let suns = vec![sun; if random.within(0, 999) == 0 { 4096 } else { 2 }];
         let shading = random.one_of(&[Shading::Flat, Shading::Gouraud88Reseeded]);
         let mesh = mesh.with_exponent(random.within(-40, 3) as i8);
-        let object = Object { mesh, placement, paints: &[paint] };
+        let object = Object { mesh, placement, materials: &[material] };
         let (mut lit, mut beams) = ([Default::default(); 3], vec![Default::default(); suns.len()]);
         match VertexStage::new(&view, object, &suns, shading, &mut lit, &mut beams) {
             Ok(stage) => {

@@ -3,7 +3,7 @@
 
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Material, Object, ObjectSun, Placement, Sun, Vector, VertexStage,
     View, average_normals,
 };
 use mode13h::palette::Ramp;
@@ -61,21 +61,21 @@ pub(crate) fn draw(degrees: i32, mut band: impl FnMut(usize, &[u8])) -> Option<(
     let camera = Camera { eye: at(0, 2, 7), target: at(0, 0, 0), up: at(0, 1, 0), near: I16F16::ONE };
     let view = View::new(&camera, lens).ok()?;
     let suns = [Sun { direction: at(4, 6, 10), intensity: I16F16::ONE }];
-    let paint = |first| {
-        Ramp::new(first, 128).map(|ramp| Paint {
+    let material = |first| {
+        Ramp::new(first, 128).map(|ramp| Material {
             ambient: I16F16::from_bits(65_536 * 15 / 100),
             diffuse: I16F16::from_bits(65_536 * 85 / 100),
             ramp,
         })
     };
-    let (red, blue) = ([paint(0)?], [paint(128)?]);
+    let (red, blue) = ([material(0)?], [material(128)?]);
 
     let turned = Placement {
         angles: [BinaryAngle::from_degrees(degrees), BinaryAngle::from_degrees(3 * degrees), BinaryAngle::default()],
         ..Placement::default()
     };
-    let cube = Object { mesh: cube, placement: turned, paints: &red };
-    let floor = Object { mesh: floor, placement: Placement::default(), paints: &blue };
+    let cube = Object { mesh: cube, placement: turned, materials: &red };
+    let floor = Object { mesh: floor, placement: Placement::default(), materials: &blue };
     let (mut lit, mut beams) = ([LitVertex::default(); 8], [ObjectSun::default(); 1]);
     let cube = VertexStage::new(&view, cube, &suns, Shading::Gouraud88Reseeded, &mut lit, &mut beams).ok()?;
     let (mut lit, mut beams) = ([LitVertex::default(); 4], [ObjectSun::default(); 1]);

@@ -46,7 +46,7 @@ impl Writer {
     }
 
     fn object(&mut self, object: &Object<'_, u32>, out: &mut Bytes) -> Result<(), String> {
-        let Object { mesh, placement, paints } = object;
+        let Object { mesh, placement, materials } = object;
         let parts = mesh.parts();
         let written = mesh_bytes(&parts)?;
         let index = self.meshes.iter().position(|mesh| *mesh == written).unwrap_or_else(|| {
@@ -60,12 +60,12 @@ impl Writer {
         out.vectors(&[placement.position, placement.pivot]);
         out.fixed(placement.scale);
         placement.angles.iter().for_each(|angle| out.word(u16::from(*angle).into()));
-        out.count(paints.len())?;
-        for paint in *paints {
-            out.fixed(paint.ambient);
-            out.fixed(paint.diffuse);
-            out.word(paint.ramp.first().into());
-            out.word(paint.ramp.entries().into());
+        out.count(materials.len())?;
+        for material in *materials {
+            out.fixed(material.ambient);
+            out.fixed(material.diffuse);
+            out.word(material.ramp.first().into());
+            out.word(material.ramp.entries().into());
         }
         Ok(())
     }

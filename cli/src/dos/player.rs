@@ -13,14 +13,14 @@
 //!     eye, target, up, near, focal lengths (16.16)
 //!     suns; each: direction, intensity (16.16)
 //!     objects; each: mesh, exponent, position, pivot, scale (16.16), angles x, y, z
-//!         paints; each: ambient, diffuse (16.16), first entry of its ramp, entries
+//!         materials; each: ambient, diffuse (16.16), first entry of its ramp, entries
 //! ```
 
 use alloc::vec::Vec;
 use core::array::from_fn;
 use mode13h::fixed::I16F16;
 use mode13h::integer::{
-    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Object, ObjectSun, Paint, Placement, Sun, Vector, VertexStage,
+    BinaryAngle, Camera, FixedMesh, Lens, LitVertex, Material, Object, ObjectSun, Placement, Sun, Vector, VertexStage,
     View,
 };
 use mode13h::palette::Ramp;
@@ -169,7 +169,7 @@ pub(crate) struct Player<'a> {
     lit: Vec<LitVertex>,
     beams: Vec<ObjectSun>,
     suns: Vec<Sun>,
-    paints: Vec<Paint>,
+    materials: Vec<Material>,
     depths: Vec<u32>,
 }
 
@@ -179,8 +179,8 @@ impl<'a> Player<'a> {
         let meshes = film.meshes.iter().map(Numbers::mesh).collect::<Option<Vec<_>>>()?;
         let vertices = meshes.iter().map(|mesh| mesh.parts().positions.len()).max().unwrap_or(0);
         let (lit, depths) = (alloc::vec![LitVertex::default(); vertices], alloc::vec![0; PIXELS]);
-        let (suns, paints) = (Vec::with_capacity(16), Vec::with_capacity(64));
-        Some(Self { film, kernel, meshes, lit, beams: Vec::with_capacity(16), suns, paints, depths })
+        let (suns, materials) = (Vec::with_capacity(16), Vec::with_capacity(64));
+        Some(Self { film, kernel, meshes, lit, beams: Vec::with_capacity(16), suns, materials, depths })
     }
 
     /// Draws a frame, counted from 0 and wrapping around, into 320 × 200 bytes; `None` if it is invalid.
@@ -219,14 +219,14 @@ impl<'a> Player<'a> {
                 scale: input.fixed()?,
                 angles: [angle(&mut input)?, angle(&mut input)?, angle(&mut input)?],
             };
-            self.paints.clear();
+            self.materials.clear();
             for _ in 0..input.count()? {
                 let (ambient, diffuse) = (input.fixed()?, input.fixed()?);
                 let first = input.word()?.to_le_bytes()[0];
                 let ramp = Ramp::new(first, u16::try_from(input.word()?).ok()?)?;
-                self.paints.push(Paint { ambient, diffuse, ramp });
+                self.materials.push(Material { ambient, diffuse, ramp });
             }
-            let object = Object { mesh: mesh.with_exponent(exponent), placement, paints: &self.paints };
+            let object = Object { mesh: mesh.with_exponent(exponent), placement, materials: &self.materials };
             let (shading, lit, beams) = (self.film.shading, &mut self.lit, &mut self.beams);
             let stage = VertexStage::new(&view, object, &self.suns, shading, lit, beams).ok()?;
             if let Some(raster) = &mut tested {

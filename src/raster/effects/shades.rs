@@ -11,7 +11,7 @@ use super::spans::{Shaded, Spans};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
-use crate::raster::paint::{to_bytes, to_nearest_bytes};
+use crate::raster::row_shader::{to_bytes, to_nearest_bytes};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::channels::{mix_cube, mix_nearest_eight};
 use crate::span::dither::Thresholds;

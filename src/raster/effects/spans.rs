@@ -6,11 +6,11 @@ use super::listing::{FaceCorners, ListedFaces, Mark, SpanData};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
-use crate::raster::paint::RowShader;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::shade::RESEED;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
+use crate::raster::row_shader::RowShader;
 #[cfg(test)]
 use crate::simd::Portable;
 use crate::simd::{Lanes8, compiled_for_each_level};

@@ -3,9 +3,9 @@
 use super::Key;
 use crate::raster::frame::Rect;
 use crate::raster::interpolation::Interpolation;
-use crate::raster::paint::RowShader;
 use crate::raster::reference::cover::{Row, RowWalk, SortedTriangle};
 use crate::raster::reference::depth::DepthPlane;
+use crate::raster::row_shader::RowShader;
 use crate::raster::vertex::Vertex;
 
 /// A face whose rows are being walked: the two edges that cross the current row. Opaque; the caller lends a slice of

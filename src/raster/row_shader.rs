@@ -1,6 +1,6 @@
-//! Painting of a triangle's rows: the choice of the pixel loop and of its start.
+//! Shading of a triangle's rows: the choice of the pixel loop and of its start.
 //!
-//! Every method of drawing a triangle paints its rows here, whole or in parts, so all give the same bytes.
+//! Every method of drawing a triangle fills its rows here, whole or in parts, so all give the same bytes.
 
 use core::ops::Range;
 
@@ -31,7 +31,7 @@ use crate::span::float;
 use crate::span::hyperbolic::{fill_estimated_blocks, floor_quotient};
 use crate::span::{Kernel, depth};
 
-/// The shades of one triangle, or another value of its corners, ready to be painted row by row.
+/// The shades of one triangle, or another value of its corners, ready to be filled row by row.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum RowShader {
     Flat(u8),
