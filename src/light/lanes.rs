@@ -124,8 +124,8 @@ impl Lights<'_> {
         let shininess = Shininess::new(reflectance.shininess);
         let mut eye = None;
         if SHINES {
-            let (normals, places) = widened(l, narrow, points);
-            eye = Some(Eye::new(l, unit(l, &from(l, &self.eye, &places)), &normals));
+            let (normals, positions) = widened(l, narrow, points);
+            eye = Some(Eye::new(l, unit(l, &from(l, &self.eye, &positions)), &normals));
         }
         for sun in self.suns {
             let [x, y, z] = sun.towards.to_array();
@@ -148,9 +148,9 @@ impl Lights<'_> {
         // With highlights, normals and positions are widened a second time: kept from above, they would take up
         // registers even where there are no lamps.
         let points = if SHINES { core::hint::black_box(points) } else { points };
-        let (normals, places) = widened(l, narrow, points);
+        let (normals, positions) = widened(l, narrow, points);
         for lamp in lamps {
-            let to_lamp = from(l, &lamp.position, &places);
+            let to_lamp = from(l, &lamp.position, &positions);
             let squares = l.mul(dot(l, &to_lamp, &to_lamp), l.splat_f64(lamp.inverse_square));
             let towards = unit(l, &to_lamp);
             // NaN, from a lamp too far away to be squared, counts as out of range.

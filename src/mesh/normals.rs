@@ -103,8 +103,8 @@ fn angles(corners: [Vec3; 3]) -> [f64; 3] {
     })
 }
 
-/// The rule that decides which faces at a position are averaged together.
-pub(super) struct Together<'a> {
+/// Decides which faces at a position are averaged together.
+pub(super) struct SmoothingRule<'a> {
     /// The cosine of the greatest angle between two ungrouped faces that are averaged together.
     least: f64,
     /// The index of each triangle's smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty if
@@ -114,7 +114,7 @@ pub(super) struct Together<'a> {
     edges: Option<topology::Edges>,
 }
 
-impl<'a> Together<'a> {
+impl<'a> SmoothingRule<'a> {
     /// The group of faces that are not averaged with any other.
     pub(super) const FLAT: u32 = 0;
     /// The group of faces whose group is unknown: the angle decides.
@@ -147,7 +147,7 @@ impl<'a> Together<'a> {
             for point in [a as usize, b as usize] {
                 if !is_inner {
                     sharp[point] = RIM;
-                } else if sharp[point] < 2 && !self.are(faces, triangle(0), triangle(1)) {
+                } else if sharp[point] < 2 && !self.is_smooth(faces, triangle(0), triangle(1)) {
                     sharp[point] += 1;
                 }
             }
@@ -161,7 +161,7 @@ impl<'a> Together<'a> {
         self.groups.get(triangle).copied().unwrap_or(Self::NO_GROUP)
     }
 
-    fn are(&self, faces: &[Face], a: usize, b: usize) -> bool {
+    fn is_smooth(&self, faces: &[Face], a: usize, b: usize) -> bool {
         match (self.group(a), self.group(b)) {
             (Self::NO_GROUP, Self::NO_GROUP) => dot(faces[a].normal, faces[b].normal) >= self.least,
             (a, b) => a == b && a != Self::FLAT,
@@ -181,8 +181,8 @@ impl Mesh {
     pub fn smooth(&mut self, weight: Weight, crease: Option<Angle>) {
         let points = topology::weld(&self.positions);
         let known = vec![None; self.positions.len()];
-        let together = crease.map(|crease| Together::new(crease, &[]));
-        self.average(&points, weight, together, known);
+        let rule = crease.map(|crease| SmoothingRule::new(crease, &[]));
+        self.average(&points, weight, rule, known);
         self.find_facts();
     }
 
@@ -209,33 +209,33 @@ impl Mesh {
     }
 
     /// Sets normals like [`smooth`](Self::smooth). `points` says which vertices count as one (points are numbered below
-    /// the number of vertices); vertices with a normal in `known` keep it. Without `together`, all faces at a position
+    /// the number of vertices); vertices with a normal in `known` keep it. Without a `rule`, all faces at a position
     /// are averaged.
     pub(super) fn average(
         &mut self,
         points: &[u32],
         weight: Weight,
-        mut together: Option<Together<'_>>,
+        mut rule: Option<SmoothingRule<'_>>,
         known: Vec<Option<Vec3>>,
     ) {
         let faces = self.faces();
         // One sum for each class: a point, or some of the faces there. (A sum for each corner would take 48 bytes per
         // corner: over a gigabyte for ten million faces.)
-        let classes = together.as_ref().and_then(|rule| {
+        let classes = rule.as_ref().and_then(|rule| {
             let classes = self.classes(points, &faces, rule)?;
             match &rule.edges {
                 Some(edges) if rule.is_scattered(edges, &faces, points.len()) => {
-                    let smooth = Together::new(Angle::TURN / 2.0, rule.groups);
+                    let smooth = SmoothingRule::new(Angle::TURN / 2.0, rule.groups);
                     self.classes(points, &faces, &smooth)
                 }
                 _ => Some(classes),
             }
         });
         // Freed before the allocations that follow.
-        if let Some(together) = &mut together {
-            together.edges = None;
+        if let Some(rule) = &mut rule {
+            rule.edges = None;
         }
-        let is_flat = |triangle: usize| together.as_ref().is_some_and(|rule| rule.group(triangle) == Together::FLAT);
+        let is_flat = |triangle: usize| rule.as_ref().is_some_and(|rule| rule.group(triangle) == SmoothingRule::FLAT);
         let class = |corner: usize, vertex: u32| match &classes {
             None => points[vertex as usize] as usize,
             Some(classes) => classes[corner] as usize,
@@ -275,10 +275,10 @@ impl Mesh {
 
     /// The class of faces that share a normal, for each corner: the index of its point, or, if the faces at a point are
     /// not all averaged together, a number beyond all points. `None` if the faces at every point are averaged together.
-    fn classes(&self, points: &[u32], faces: &[Face], together: &Together<'_>) -> Option<Vec<u32>> {
+    fn classes(&self, points: &[u32], faces: &[Face], rule: &SmoothingRule<'_>) -> Option<Vec<u32>> {
         const NONE: u32 = u32::MAX;
         let count = points.iter().max().map_or(0, |&greatest| greatest as usize + 1);
-        let takes_part = |t: usize| faces[t].has_area() && together.group(t) != Together::FLAT;
+        let takes_part = |t: usize| faces[t].has_area() && rule.group(t) != SmoothingRule::FLAT;
         // If every face at a point matches the first one, no more comparisons are needed there. On a scan, this holds
         // nearly everywhere.
         let mut first = vec![NONE; count];
@@ -289,7 +289,7 @@ impl Mesh {
                 let point = points[vertex as usize] as usize;
                 if first[point] == NONE {
                     first[point] = t as u32;
-                } else if !is_divided[point] && !together.are(faces, first[point] as usize, t) {
+                } else if !is_divided[point] && !rule.is_smooth(faces, first[point] as usize, t) {
                     (is_divided[point], any) = (true, true);
                 }
             }
@@ -309,7 +309,7 @@ impl Mesh {
         let mut parts = Parts::default();
         for here in corners.chunk_by(|a, b| a.0 == b.0) {
             let face = |place: u32| here[place as usize].1 as usize / 3;
-            parts.find(here.len() as u32, |a, b| together.are(faces, face(a), face(b)));
+            parts.find(here.len() as u32, |a, b| rule.is_smooth(faces, face(a), face(b)));
             for (place, &(_, corner)) in (0..).zip(here) {
                 // The first face of a part comes before the others and represents it.
                 let stands = parts.sets.of(place);

@@ -6,7 +6,7 @@ use alloc::vec::Vec;
 
 use glam::{Vec2, Vec3};
 
-use super::normals::Together;
+use super::normals::SmoothingRule;
 use super::shells::{self, InsideOut};
 use super::topology::Edges;
 use super::{Lines, Mesh, MeshError, Surface, Weight, check, normals, topology, twins};
@@ -57,9 +57,9 @@ pub struct Parts {
 
 impl Parts {
     /// The group of a flat-shaded triangle.
-    pub const FLAT: u32 = Together::FLAT;
+    pub const FLAT: u32 = SmoothingRule::FLAT;
     /// The group of a triangle in no group.
-    pub const NO_GROUP: u32 = Together::NO_GROUP;
+    pub const NO_GROUP: u32 = SmoothingRule::NO_GROUP;
 }
 
 /// Counts of the defects repaired in a closed mesh.
@@ -83,7 +83,7 @@ impl Mesh {
     /// of texture coordinates that is not finite; a surface that does not exist.
     pub fn from_parts(parts: Parts) -> Result<(Self, Repairs), MeshError> {
         let Parts {
-            positions: mut places,
+            mut positions,
             normals,
             mut texcoords,
             mut triangles,
@@ -94,11 +94,11 @@ impl Mesh {
             crease,
             as_given,
         } = parts;
-        check(&places, &triangles)?;
+        check(&positions, &triangles)?;
         let of_vertices = [("normals", normals.len()), ("texture coordinates", texcoords.len())];
         let of_triangles =
             [("triangle surfaces", triangle_surfaces.len()), ("lines", lines.len()), ("groups", groups.len())];
-        for (lists, needed) in [(&of_vertices[..], places.len()), (&of_triangles, triangles.len())] {
+        for (lists, needed) in [(&of_vertices[..], positions.len()), (&of_triangles, triangles.len())] {
             if let Some(&(what, given)) = lists.iter().find(|(_, given)| ![0, needed].contains(given)) {
                 return Err(MeshError::Count { what, given, needed });
             }
@@ -112,10 +112,10 @@ impl Mesh {
             return Err(MeshError::SurfaceOutOfRange { triangle });
         }
         let mut known: Vec<Option<Vec3>> = normals.into_iter().map(|normal| normal.and_then(normals::unit)).collect();
-        known.resize(places.len(), None);
+        known.resize(positions.len(), None);
         let complete = known.iter().all(Option::is_some);
 
-        let mut points = topology::weld(&places);
+        let mut points = topology::weld(&positions);
         let mut edges = Edges::new(&triangles, &points);
         let mut repairs = Repairs::default();
         if !as_given && edges.balance() {
@@ -129,17 +129,17 @@ impl Mesh {
                 retain(&mut triangle_surfaces, &keep);
                 retain(&mut lines, &keep);
                 retain(&mut groups, &keep);
-                let keep = drop_unused(&mut triangles, places.len());
+                let keep = drop_unused(&mut triangles, positions.len());
                 retain(&mut texcoords, &keep);
                 retain(&mut known, &keep);
-                retain(&mut places, &keep);
-                points = topology::weld(&places);
+                retain(&mut positions, &keep);
+                points = topology::weld(&positions);
                 edges = Edges::new(&triangles, &points);
             }
-            if let Some(inside_out) = shells::inside_out(&places, &triangles, &edges) {
+            if let Some(inside_out) = shells::inside_out(&positions, &triangles, &edges) {
                 repairs.turned = inside_out.count();
-                let copies = turn(&inside_out, &mut triangles, &places, &mut known);
-                copy(&mut places, &copies);
+                let copies = turn(&inside_out, &mut triangles, &positions, &mut known);
+                copy(&mut positions, &copies);
                 copy(&mut points, &copies);
                 copy(&mut texcoords, &copies);
                 edges = Edges::new(&triangles, &points);
@@ -147,17 +147,17 @@ impl Mesh {
         }
 
         let given = known.iter().map(|normal| normal.unwrap_or(Vec3::Z)).collect();
-        let mut mesh = Self::assemble_welded(places, given, triangles, &points, &edges);
+        let mut mesh = Self::assemble_welded(positions, given, triangles, &points, &edges);
         mesh.texcoords = (!texcoords.is_empty()).then_some(texcoords);
         mesh.surfaces = surfaces;
         mesh.triangle_surfaces = triangle_surfaces;
         mesh.lines = Lines(lines);
         if !complete {
-            let together = match crease {
-                Some(crease) => Together::new(crease, &[]),
-                None => Together::new(CREASE, &groups).unless_scattered(edges),
+            let rule = match crease {
+                Some(crease) => SmoothingRule::new(crease, &[]),
+                None => SmoothingRule::new(CREASE, &groups).unless_scattered(edges),
             };
-            mesh.average(&points, Weight::Angle, Some(together), known);
+            mesh.average(&points, Weight::Angle, Some(rule), known);
         }
         Ok((mesh.with_facts(), repairs))
     }
@@ -196,7 +196,7 @@ fn drop_unused(triangles: &mut [[u32; 3]], vertices: usize) -> Vec<bool> {
 fn turn(
     inside_out: &InsideOut,
     triangles: &mut [[u32; 3]],
-    places: &[Vec3],
+    positions: &[Vec3],
     known: &mut Vec<Option<Vec3>>,
 ) -> Vec<u32> {
     let mut agrees = vec![0.0; inside_out.shells()];
@@ -204,7 +204,7 @@ fn turn(
     for (number, triangle) in triangles.iter_mut().enumerate() {
         let Some(shell) = inside_out.shell(number) else { continue };
         triangle.swap(1, 2);
-        let [a, b, c] = triangle.map(|vertex| places[vertex as usize]);
+        let [a, b, c] = triangle.map(|vertex| positions[vertex as usize]);
         let face = normals::face_normal(a, b, c).unwrap_or(Vec3::ZERO);
         let given = triangle.iter().filter_map(|&vertex| known[vertex as usize]);
         agrees[shell] += given.map(|normal| f64::from(normal.dot(face))).sum::<f64>();

@@ -57,24 +57,24 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     plan.objects.clear();
     plan.seen = Rect::NOWHERE;
     let mut farthest = 0.0_f64;
-    for (place, object) in inputs.scene.objects().iter().enumerate() {
-        if !inputs.scene.is_visible(place) {
+    for (index, object) in inputs.scene.objects().iter().enumerate() {
+        if !inputs.scene.is_visible(index) {
             plan.objects.push(ObjectPlan::new(shading));
             continue;
         }
-        let view = &inputs.views[place];
+        let view = &inputs.views[index];
         let reach = view.reach(object.mesh().bounds());
         let rules = Rules {
             inputs,
             scene: inputs.scene,
-            place,
+            index,
             object,
             view,
             reach,
             // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
             is_out_of_sight: !is_integer && shading != Shading::GouraudVintage && reach.is_out_of_sight(view.near()),
-            change: inputs.change.get(place).copied().unwrap_or(Change::New),
-            lamps_in_range: lamps(place).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count(),
+            change: inputs.change.get(index).copied().unwrap_or(Change::New),
+            lamps_in_range: lamps(index).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count(),
             is_integer,
             max_error,
             shading: if max_error.is_some() && has_custom_response(object) { Shading::Phong } else { shading },
@@ -91,7 +91,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
         }
     }
     let Plan { order, objects, .. } = plan;
-    order.retain(|place| !objects[*place].stages.is_out_of_sight);
+    order.retain(|index| !objects[*index].stages.is_out_of_sight);
     let needed = (farthest * LEAST_DEPTH) as f32;
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
     if shading == Shading::GouraudVintage || is_integer {
@@ -124,7 +124,7 @@ const fn in_integers(effect: Effect) -> bool {
 struct Rules<'a> {
     inputs: &'a Inputs<'a>,
     scene: &'a Scene,
-    place: usize,
+    index: usize,
     object: &'a Object,
     view: &'a ObjectView,
     reach: ScreenBounds,
@@ -156,7 +156,7 @@ impl Rules<'_> {
                 plan.set(effect, Decision::off(Reason::NotInIntegers));
                 continue;
             }
-            if let Some(on) = self.inputs.forced.get(Some(self.scene.object_ids()[self.place]), effect)
+            if let Some(on) = self.inputs.forced.get(Some(self.scene.object_ids()[self.index]), effect)
                 && on != decision.on
                 && !(decision.on && effect.keeps_inside())
             {

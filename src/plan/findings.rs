@@ -21,7 +21,7 @@ pub(crate) struct Findings {
 
 impl Findings {
     /// The text added to the reason for an effect; may be empty.
-    pub(super) fn words(&self, effect: Effect, on: bool) -> String {
+    pub(super) fn text(&self, effect: Effect, on: bool) -> String {
         match (effect, &self.face_counts, self.linear_error) {
             (Effect::Gouraud, Some(counts), _) => format!(": {counts}"),
             (Effect::Phong | Effect::Tessellation, _, Some(shades)) if !on => {

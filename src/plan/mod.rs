@@ -230,7 +230,7 @@ impl Plan {
             let findings = findings(index);
             for effect in Effect::ALL {
                 let Decision { on, choice, reason } = plan[effect];
-                let reason = reason.words(scene, index) + &findings.words(effect, on);
+                let reason = reason.text(scene, index) + &findings.text(effect, on);
                 rows.push(Row {
                     index,
                     object: reason::name_of(scene, index),

@@ -170,7 +170,7 @@ pub enum Reason {
 impl Reason {
     /// The reason as text, for `object` of `scene`.
     #[must_use]
-    pub fn words(&self, scene: &Scene, object: usize) -> String {
+    pub fn text(&self, scene: &Scene, object: usize) -> String {
         let material = |i: usize| {
             let name = scene.objects().get(object).and_then(|o| o.materials.get(i)).map_or("", |m| m.name.as_str());
             if name.is_empty() { format!("material {i}") } else { format!("material `{name}`") }

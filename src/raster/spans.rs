@@ -120,14 +120,14 @@ impl<D: Cell> Raster<'_, D> {
             // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
             let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel };
-            let place = (layout, self.clip);
+            let area = (layout, self.clip);
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match kind {
                 Some(kind) => match &mut shaded {
-                    Some(data) => draw_shaded(level, of, (kind, data), place, target, list),
-                    None => draw_shaded(level, of, (kind, &mut ShadedData::default()), place, target, list),
+                    Some(data) => draw_shaded(level, of, (kind, data), area, target, list),
+                    None => draw_shaded(level, of, (kind, &mut ShadedData::default()), area, target, list),
                 },
-                None => draw_linear(level, of, place, target, list),
+                None => draw_linear(level, of, area, target, list),
             };
             first += together;
         }
@@ -188,17 +188,17 @@ impl<D: Cell> Raster<'_, D> {
 }
 
 /// The drawing area of triangles: the pixels' layout, and the clip rectangle.
-pub(super) type Place = (FrameLayout, Rect);
+pub(super) type DrawArea = (FrameLayout, Rect);
 
 /// Draws triangles with linear shades, none of which is unbatched; if there are cells, only where they are nearer.
 ///
 /// Like `draw_shaded`, it has no type parameters, so that it is compiled in this crate rather than
 /// in every crate that draws.
 #[inline(never)]
-fn draw_linear(level: Level, of: Drawn<'_>, place: Place, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
+fn draw_linear(level: Level, of: Drawn<'_>, area: DrawArea, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
     match target.cells.is_some() {
-        false => draw_at_level::<false>(level, of, place, target, list),
-        true => draw_at_level::<true>(level, of, place, target, list),
+        false => draw_at_level::<false>(level, of, area, target, list),
+        true => draw_at_level::<true>(level, of, area, target, list),
     }
 }
 
@@ -207,7 +207,7 @@ compiled_for_each_level! {
     #[inline(never)]
     fn draw_at_level[const DEPTHS: bool][DEPTHS](
         of: Drawn<'_>,
-        place: Place,
+        area: DrawArea,
         target: &mut Target<'_>,
         list: &mut SpanList,
     ) -> DrawStats = draw_by;
@@ -217,11 +217,11 @@ compiled_for_each_level! {
 fn draw_by<S: Lanes8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
-    place: Place,
+    area: DrawArea,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    draw_triangles::<S, _, DEPTHS>(s, of, place, target, &mut Linear::new(!of.picks.flat.is_empty()), list)
+    draw_triangles::<S, _, DEPTHS>(s, of, area, target, &mut Linear::new(!of.picks.flat.is_empty()), list)
 }
 
 compiled_for_each_level! {
@@ -230,7 +230,7 @@ compiled_for_each_level! {
     fn draw_shaded[][](
         of: Drawn<'_>,
         kind: (Kind, &mut ShadedData),
-        place: Place,
+        area: DrawArea,
         target: &mut Target<'_>,
         list: &mut SpanList,
     ) -> DrawStats = draw_shaded_by;
@@ -241,7 +241,7 @@ fn draw_shaded_by<S: Lanes8>(
     s: S,
     of: Drawn<'_>,
     (kind, data): (Kind, &mut ShadedData),
-    place: Place,
+    area: DrawArea,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
@@ -249,8 +249,8 @@ fn draw_shaded_by<S: Lanes8>(
     if !HAS_F64 {
         return DrawStats::default();
     }
-    let mut shades = Shaded8::new(kind, (of.triangles, of.picks), place.0, data);
-    draw_triangles::<S, _, true>(s, of, place, target, &mut shades, list)
+    let mut shades = Shaded8::new(kind, (of.triangles, of.picks), area.0, data);
+    draw_triangles::<S, _, true>(s, of, area, target, &mut shades, list)
 }
 
 /// [`Corners8::gather`], not compiled for each level: it is called once for many triangles.
@@ -264,7 +264,7 @@ fn gather_first<const DEPTHS: bool>(corners: &mut Corners8, triangles: &Triangle
 pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
     of: Drawn<'_>,
-    (layout, clip): Place,
+    (layout, clip): DrawArea,
     target: &mut Target<'_>,
     shades: &mut P,
     list: &mut SpanList,
@@ -319,12 +319,12 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             }
             // A triangle without area has no rows, and no plane.
             if rows > 0 {
-                let (setup, place) = (&mut setup, (layout, clip));
+                let (setup, area) = (&mut setup, (layout, clip));
                 let (target, spans) = (&mut *target, (&mut *shades, &mut *list));
                 // By a call, which leaves the registers to small triangles.
                 s.apart(
                     #[inline(always)]
-                    move || list_large::<S, P, DEPTHS>(s, of, (number, i), setup, place, target, spans),
+                    move || list_large::<S, P, DEPTHS>(s, of, (number, i), setup, area, target, spans),
                 );
             }
         }
@@ -342,7 +342,7 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     of: Drawn<'_>,
     (number, i): (usize, usize),
     setup: &mut TriangleSetup8,
-    (layout, clip): Place,
+    (layout, clip): DrawArea,
     target: &mut Target<'_>,
     (shades, list): (&mut P, &mut SpanList),
 ) {

@@ -13,14 +13,14 @@ const FREE: (u32, u32) = (u32::MAX, u32::MAX);
 #[derive(Debug, Default)]
 pub(super) struct EdgeMap {
     /// Edges and their numbers, at indices by hash. The length is a power of two, or zero.
-    places: Vec<((u32, u32), u32)>,
+    slots: Vec<((u32, u32), u32)>,
     count: usize,
 }
 
 impl EdgeMap {
     /// Removes all edges.
     pub(super) fn clear(&mut self) {
-        self.places.fill((FREE, 0));
+        self.slots.fill((FREE, 0));
         self.count = 0;
     }
 
@@ -30,40 +30,40 @@ impl EdgeMap {
 
     /// The number of an edge, if it has one.
     pub(super) fn get(&self, edge: (u32, u32)) -> Option<u32> {
-        let (known, number) = *self.places.get(self.place(edge)?)?;
+        let (known, number) = *self.slots.get(self.slot(edge)?)?;
         (known == edge).then_some(number)
     }
 
     /// Sets the number of an edge, replacing an earlier one.
     pub(super) fn insert(&mut self, edge: (u32, u32), number: u32) {
-        if 2 * (self.count + 1) > self.places.len() {
+        if 2 * (self.count + 1) > self.slots.len() {
             self.grow();
         }
-        if let Some(place) = self.place(edge) {
-            self.count += usize::from(self.places[place].0 == FREE);
-            self.places[place] = (edge, number);
+        if let Some(slot) = self.slot(edge) {
+            self.count += usize::from(self.slots[slot].0 == FREE);
+            self.slots[slot] = (edge, number);
         }
     }
 
     /// The slot of an edge, or the one where it would be inserted; `None` in a table without slots.
-    fn place(&self, (a, b): (u32, u32)) -> Option<usize> {
-        let last = self.places.len().checked_sub(1)?;
+    fn slot(&self, (a, b): (u32, u32)) -> Option<usize> {
+        let last = self.slots.len().checked_sub(1)?;
         // Knuth's multiplicative hash (The Art of Computer Programming, 6.4), 2⁶⁴ over the golden ratio. Its upper
         // half is the better one, and 32 bits fit a `usize`.
         let hash = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 32;
-        let mut place = hash as usize & last;
+        let mut slot = hash as usize & last;
         // At least half of the slots are free, so this ends.
-        while self.places[place].0 != FREE && self.places[place].0 != (a, b) {
-            place = (place + 1) & last;
+        while self.slots[slot].0 != FREE && self.slots[slot].0 != (a, b) {
+            slot = (slot + 1) & last;
         }
-        Some(place)
+        Some(slot)
     }
 
     /// Doubles the number of slots.
     #[cold]
     fn grow(&mut self) {
-        let places = (2 * self.places.len()).max(16);
-        let before = core::mem::replace(&mut self.places, alloc::vec![(FREE, 0); places]);
+        let slots = (2 * self.slots.len()).max(16);
+        let before = core::mem::replace(&mut self.slots, alloc::vec![(FREE, 0); slots]);
         self.count = 0;
         before.into_iter().filter(|(edge, _)| *edge != FREE).for_each(|(edge, number)| self.insert(edge, number));
     }
@@ -91,11 +91,11 @@ mod tests {
             }
         }
         assert_eq!((map.count, map.is_empty()), (naive.len(), false));
-        let slots = map.places.len();
+        let slots = map.slots.len();
         map.clear();
         assert!(map.is_empty() && naive.keys().all(|edge| map.get(*edge).is_none()));
         naive.iter().for_each(|(edge, number)| map.insert(*edge, *number));
         assert!(naive.iter().all(|(edge, number)| map.get(*edge) == Some(*number)));
-        assert_eq!(map.places.len(), slots, "its memory is used again");
+        assert_eq!(map.slots.len(), slots, "its memory is used again");
     }
 }

@@ -60,7 +60,7 @@ impl SurfaceMaterial {
     /// A shade, or a channel, after the material's own response to light.
     #[inline]
     pub(super) fn respond(&self, shade: U8F8) -> U8F8 {
-        self.response.as_ref().map_or(shade, |response| answered(response, shade, self.ramp))
+        self.response.as_ref().map_or(shade, |response| apply_response(response, shade, self.ramp))
     }
 
     /// The shade, or the channel, of an intensity. This is the only clamp; beyond f32 an intensity becomes infinite,
@@ -84,7 +84,7 @@ impl SurfaceMaterial {
 
 /// A response applied to a shade of a ramp.
 #[cold]
-fn answered(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
+fn apply_response(response: &LightResponse, shade: U8F8, ramp: Ramp) -> U8F8 {
     // A ramp of one entry has one shade.
     let full = f32::from(ramp.entries() - 1).max(1.0) * 256.0;
     let intensity = (f32::from(shade.to_bits()) - f32::from(ramp.first()) * 256.0) / full;

@@ -22,11 +22,11 @@ use crate::simd::compiled_for_each_level;
 #[inline]
 #[must_use]
 pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-    let mut places = [0.0; LANES];
-    for (lane, place) in (0_u16..).zip(&mut places) {
-        *place = f64::from(first) + f64::from(lane);
+    let mut indices = [0.0; LANES];
+    for (lane, index) in (0_u16..).zip(&mut indices) {
+        *index = f64::from(first) + f64::from(lane);
     }
-    divide(&numerators(&places, a, da, d, dd))
+    divide(&numerators(&indices, a, da, d, dd))
 }
 
 compiled_for_each_level! {
@@ -34,9 +34,9 @@ compiled_for_each_level! {
     #[inline]
     #[must_use]
     pub fn interpolate_at[][](
-        kernel: Kernel, places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
+        kernel: Kernel, indices: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64,
     ) -> Points {
-        divide(&numerators(places, a, da, d, dd))
+        divide(&numerators(indices, a, da, d, dd))
     }
 }
 
@@ -46,15 +46,15 @@ pub(crate) type Numerators = [Lanes<f64>; 7];
 /// The dividends and divisors of [`interpolate_at`], also for pixels of different rows: [`divide`] computes its results
 /// from them.
 #[inline(always)]
-pub(crate) fn numerators(places: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
+pub(crate) fn numerators(indices: &Lanes<f64>, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Numerators {
     let mut numerators = [[0.0; LANES]; 7];
     // Index loops, as in `light::lanes`.
     let mut i = 0;
     while i < 6 {
-        numerators[i] = each!(lane => a[i] + places[lane] * da[i]);
+        numerators[i] = each!(lane => a[i] + indices[lane] * da[i]);
         i += 1;
     }
-    numerators[6] = each!(lane => d + places[lane] * dd);
+    numerators[6] = each!(lane => d + indices[lane] * dd);
     numerators
 }
 

@@ -44,8 +44,8 @@ pub(super) struct Mark([u32; 2]);
 impl Mark {
     fn new(face: u32, [number, last]: [i32; 2], [column, row]: [i32; 2]) -> Self {
         // The numbers are below 128 and 8,192, column and row below 65,536.
-        let place = column.cast_unsigned() | row.cast_unsigned() << 16;
-        Self([face | (number << 6 | last << 13).cast_unsigned(), place])
+        let position = column.cast_unsigned() | row.cast_unsigned() << 16;
+        Self([face | (number << 6 | last << 13).cast_unsigned(), position])
     }
 
     #[inline(always)]
@@ -66,7 +66,7 @@ impl Mark {
 
     /// Column and row.
     #[inline(always)]
-    pub(super) const fn place(self) -> [i32; 2] {
+    pub(super) const fn position(self) -> [i32; 2] {
         [(self.0[1] & 0xFFFF).cast_signed(), (self.0[1] >> 16).cast_signed()]
     }
 }

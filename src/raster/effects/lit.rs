@@ -75,7 +75,7 @@ impl LitPlane {
 
 /// The indices of eight successive pixels.
 #[inline(always)]
-fn places(first: usize) -> Lanes<f64> {
+fn indices(first: usize) -> Lanes<f64> {
     // At most 64.
     each!(lane => (first + lane) as f64)
 }
@@ -85,7 +85,7 @@ struct Pending {
     /// The first eight make up a full block; the rest is room for what one more row adds.
     numerators: [[f64; 2 * LANES]; 7],
     /// The index of each among the pixels of all spans.
-    places: [usize; 2 * LANES],
+    indices: [usize; 2 * LANES],
     count: usize,
 }
 
@@ -93,7 +93,7 @@ impl Pending {
     fn new() -> Self {
         let mut numerators = [[0.0; 2 * LANES]; 7];
         numerators[6] = [1.0; 2 * LANES];
-        Self { numerators, places: [0; 2 * LANES], count: 0 }
+        Self { numerators, indices: [0; 2 * LANES], count: 0 }
     }
 
     /// Appends the first `count` of eight pixels, at most seven; `first` is the index of the first one.
@@ -106,8 +106,8 @@ impl Pending {
                 *to = numerators[i];
             }
         }
-        if let Some(to) = self.places[at..].first_chunk_mut() {
-            // The places after the last pixel are not used.
+        if let Some(to) = self.indices[at..].first_chunk_mut() {
+            // The indices after the last pixel are not used.
             *to = each!(lane => first + lane);
         }
         self.count = at + count;
@@ -121,7 +121,7 @@ impl Pending {
             *eight = each!(lane => self.numerators[i][lane]);
         }
         let lit = light.at(&lit::divide(&numerators));
-        for (lane, &pixel) in self.places[..self.count.min(LANES)].iter().enumerate() {
+        for (lane, &pixel) in self.indices[..self.count.min(LANES)].iter().enumerate() {
             for (i, out) in out.iter_mut().enumerate() {
                 out[pixel] = lit[i][lane];
             }
@@ -137,7 +137,7 @@ impl Pending {
             }
         }
         for lane in 0..LANES {
-            self.places[lane] = self.places[LANES + lane];
+            self.indices[lane] = self.indices[LANES + lane];
         }
         self.count -= LANES;
     }
@@ -200,7 +200,7 @@ fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mu
             let length = span.len;
             let mut first = 0;
             while length - first >= LANES {
-                let lit = light.at(&lit::divide(&lit::numerators(&places(first), &a, da, d, *dd)));
+                let lit = light.at(&lit::divide(&lit::numerators(&indices(first), &a, da, d, *dd)));
                 for (i, out) in out.iter_mut().enumerate() {
                     if let Some(to) = out[span.first + first..].first_chunk_mut() {
                         *to = lit[i];
@@ -209,7 +209,7 @@ fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mu
                 first += LANES;
             }
             if first < length {
-                let numerators = lit::numerators(&places(first), &a, da, d, *dd);
+                let numerators = lit::numerators(&indices(first), &a, da, d, *dd);
                 pending.push(&numerators, span.first + first, length - first);
                 if pending.count >= LANES {
                     pending.light(light, &mut out);
@@ -228,7 +228,7 @@ fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mu
 struct Knots {
     spacing: usize,
     /// Positions of the lit pixels, relative to the span's first pixel.
-    places: [i32; KNOTS],
+    indices: [i32; KNOTS],
     /// Number of knots, at least two.
     count: usize,
 }
@@ -238,23 +238,23 @@ impl Knots {
     /// rectangle.
     fn new(span: &Span, spacing: SampleSpacing) -> Self {
         let spacing = spacing.pixels();
-        let mut places = [0; KNOTS];
-        for (place, number) in places.iter_mut().zip(0..) {
+        let mut indices = [0; KNOTS];
+        for (index, number) in indices.iter_mut().zip(0..) {
             // At most 24 · 16.
-            *place = (number * spacing as i32).min(span.last());
+            *index = (number * spacing as i32).min(span.last());
         }
-        Self { spacing, places, count: span.len.div_ceil(spacing) + 1 }
+        Self { spacing, indices, count: span.len.div_ceil(spacing) + 1 }
     }
 
     /// Calls `light` with the points of the knots, eight at a time, and the index of the first of them.
     fn light(&self, plane: &LitPlane, span: &Span, kernel: Kernel, mut light: impl FnMut(usize, &Points)) {
         let ((a, d), (da, dd)) = (plane.at((span.x, span.y)), &plane.step);
-        for (first, eight) in self.places[..self.count].chunks(LANES).enumerate() {
-            let mut places = [0.0; LANES];
-            for (lane, place) in eight.iter().enumerate() {
-                places[lane] = f64::from(*place);
+        for (first, eight) in self.indices[..self.count].chunks(LANES).enumerate() {
+            let mut indices = [0.0; LANES];
+            for (lane, index) in eight.iter().enumerate() {
+                indices[lane] = f64::from(*index);
             }
-            light(first * LANES, &lit::interpolate_at(kernel, &places, &a, da, d, *dd));
+            light(first * LANES, &lit::interpolate_at(kernel, &indices, &a, da, d, *dd));
         }
     }
 
@@ -262,7 +262,7 @@ impl Knots {
     fn fill(&self, knots: &[u16; KNOTS], thresholds: &ThresholdRow, column: usize, piece: &mut [u8]) {
         for (i, piece) in piece.chunks_mut(self.spacing).enumerate() {
             let (from, to) = (i32::from(knots[i]), i32::from(knots[i + 1]));
-            let pixels = self.places[i + 1] - self.places[i];
+            let pixels = self.indices[i + 1] - self.indices[i];
             // In 1/256 of a shade's unit. Rounded toward zero: no sum goes beyond `to`.
             let step = if pixels == 0 { 0 } else { ((to - from) << 8) / pixels };
             for (eight, bytes) in piece.chunks_mut(LANES).enumerate() {

@@ -86,7 +86,7 @@ use super::draw_stats::DrawStats;
 use super::pick::Pick;
 use super::reference::cover::Row;
 use super::setup::FrameLayout;
-use super::spans::{Drawn, Place, draw_triangles};
+use super::spans::{DrawArea, Drawn, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 pub use crate::lanes::{Lanes, Points};
@@ -266,7 +266,7 @@ compiled_for_each_level! {
     fn draw_effects[][](
         of: Drawn<'_>,
         effects: (&mut EffectSpans<'_>, &mut SpanList),
-        place: Place,
+        area: DrawArea,
         target: &mut Target<'_>,
     ) -> DrawStats = draw_effects_by;
 }
@@ -276,10 +276,10 @@ fn draw_effects_by<S: Lanes8>(
     s: S,
     of: Drawn<'_>,
     (spans, list): (&mut EffectSpans<'_>, &mut SpanList),
-    place: Place,
+    area: DrawArea,
     target: &mut Target<'_>,
 ) -> DrawStats {
-    draw_triangles::<S, _, true>(s, of, place, target, spans, list)
+    draw_triangles::<S, _, true>(s, of, area, target, spans, list)
 }
 
 impl<D: Cell> Raster<'_, D> {

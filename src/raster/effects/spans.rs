@@ -168,7 +168,7 @@ impl<'a> Spans<'a> {
     pub(super) fn span(&self, i: usize) -> Span {
         let mark = self.mark(i);
         let (planes, lane) = self.data.planes(mark.face());
-        let [column, row] = mark.place();
+        let [column, row] = mark.position();
         let span = self.list.span(self.first + i);
         let (skipped, first) = (skipped(span), self.pixels[i] as usize);
         let (x, y, len) = (planes.column[lane] + column, planes.row[lane] + row, (span.length + skipped) as usize);

@@ -118,20 +118,20 @@ impl Faces<'_> {
         let (linear, exact) = (budget.spare(LINEAR_ROUNDING), budget.spare(EXACT_ROUNDING));
         while unknown != 0 {
             let surface = surfaces[unknown.trailing_zeros() as usize];
-            let (mut places, mut count, mut left) = ([0; LANES], 0, unknown);
+            let (mut chosen, mut count, mut left) = ([0; LANES], 0, unknown);
             while left != 0 && count < LANES {
                 let at = left.trailing_zeros() as usize;
                 left &= left - 1;
                 if surfaces[at] == surface {
-                    places[count] = at;
+                    chosen[count] = at;
                     count += 1;
                     unknown &= !(1 << at);
                 }
             }
-            let places = &places[..count];
-            let (faces, shapes) = self.eight(budget, first, places.iter().map(|&at| (at, back >> at & 1 == 1)));
+            let chosen = &chosen[..count];
+            let (faces, shapes) = self.eight(budget, first, chosen.iter().map(|&at| (at, back >> at & 1 == 1)));
             let bounds = self.bounds(budget, (&faces, &shapes), surface, false);
-            for (lane, &at) in places.iter().enumerate() {
+            for (lane, &at) in chosen.iter().enumerate() {
                 let (on_screen, on_face) = (bounds.on_screen[lane], bounds.on_face[lane]);
                 let is_linear = on_screen <= linear;
                 classes.linear |= u64::from(is_linear) << at;
@@ -147,11 +147,11 @@ impl Faces<'_> {
         &self,
         budget: &Budget,
         first: usize,
-        places: impl Iterator<Item = (usize, bool)>,
+        chosen: impl Iterator<Item = (usize, bool)>,
     ) -> (EightFaces, Shapes) {
         let mut faces = EightFaces { normals: [[ZERO; 3]; 3], positions: [[ZERO; 3]; 3] };
         let mut shapes = Shapes { spread: ZERO, edge: ZERO, part: None, bend: ZERO };
-        for (lane, (at, back)) in places.enumerate() {
+        for (lane, (at, back)) in chosen.enumerate() {
             let side = if back { -1.0 } else { 1.0 };
             let facet = &budget.clusters.facets[first + at];
             (shapes.spread[lane], shapes.edge[lane]) = (facet.spread, facet.edge);

@@ -34,16 +34,16 @@ fn project_by<S: F32Lanes8, const TESTED: bool>(
     vertices: &mut VertexColumns,
 ) {
     let (eights, rest) = positions.as_chunks::<LANES>();
-    let (places, _) = vertices.at.as_chunks_mut::<LANES>();
+    let (projected, _) = vertices.at.as_chunks_mut::<LANES>();
     let (depths, _) = vertices.depth.as_chunks_mut::<LANES>();
-    let n = eights.len().min(places.len()).min(depths.len());
-    let (places, depths) = (&mut places[..n], &mut depths[..n]);
+    let n = eights.len().min(projected.len()).min(depths.len());
+    let (projected, depths) = (&mut projected[..n], &mut depths[..n]);
     for (i, points) in eights[..n].iter().enumerate() {
-        project_eight(s, narrow, points, &mut places[i], &mut depths[i]);
+        project_eight(s, narrow, points, &mut projected[i], &mut depths[i]);
     }
     // The remaining vertices, or all of an object that is claimed to lie inside but does not.
     let whole = positions.len() - rest.len();
-    let strays = !TESTED && vertices.at[..whole].iter().any(|place| place.needs_clipping());
+    let strays = !TESTED && vertices.at[..whole].iter().any(|at| at.needs_clipping());
     one_by_one::<TESTED>(view, positions, if strays { 0 } else { whole }, vertices);
 }
 
@@ -53,7 +53,7 @@ fn project_eight<S: F32Lanes8>(
     s: S,
     narrow: &Narrow,
     points: &[Vec3; LANES],
-    places: &mut [ScreenPos; LANES],
+    projected: &mut [ScreenPos; LANES],
     depths: &mut [u32; LANES],
 ) {
     let at = s.vectors(points);
@@ -75,9 +75,9 @@ fn project_eight<S: F32Lanes8>(
     let [low, high] = s.interleave_i32(x, y);
     s.store_i32(low, &mut pairs[0]);
     s.store_i32(high, &mut pairs[1]);
-    for (lane, place) in places.iter_mut().enumerate() {
-        let (half, at) = (lane / 4, 2 * (lane % 4));
-        *place = ScreenPos::new(pairs[half][at], pairs[half][at + 1]);
+    for (lane, projected) in projected.iter_mut().enumerate() {
+        let (half, x) = (lane / 4, 2 * (lane % 4));
+        *projected = ScreenPos::new(pairs[half][x], pairs[half][x + 1]);
     }
     let mut numbers = [0; LANES];
     s.store_i32(s.select_i32(within, depth, nothing), &mut numbers);
