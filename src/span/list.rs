@@ -298,7 +298,7 @@ impl SpanList {
     /// Span `k`, which is below [`count`](Self::count).
     #[inline(always)]
     pub(crate) fn span(&self, k: usize) -> Span {
-        let k = k.min(CAPACITY);
+        let k = k % CAPACITY;
         Span { at: self.at[k], length: self.length[k], fill: self.fill[k] }
     }
 
@@ -306,7 +306,7 @@ impl SpanList {
     #[cfg(simd_x86_64)]
     #[inline(always)]
     pub(crate) fn fill(&self, k: usize) -> &u32 {
-        &self.fill[k.min(CAPACITY)]
+        &self.fill[k % CAPACITY]
     }
 
     /// The depth of span `k`, which is below [`count`](Self::count).
@@ -622,7 +622,7 @@ impl SpanDepths<'_> {
     /// The depth of span `k`.
     #[inline(always)]
     pub(crate) fn of(self, k: usize) -> SpanDepth {
-        let k = k.min(CAPACITY);
+        let k = k % CAPACITY;
         SpanDepth { cell: self.cell[k], z: self.z[k], dz: self.dz[k] }
     }
 }
