@@ -314,7 +314,7 @@ impl PerspectivePlanes8 {
         single_step: [[0.0; LANES]; 3],
         row_step: [[0.0; LANES]; 3],
         fits_levels: 0,
-        single_level: [-1; LANES],
+        single_level: [0; LANES],
     };
 
     #[inline(always)]

@@ -126,7 +126,7 @@ impl SpanList {
             cells: 0,
             pitch: 0,
             width: 0,
-            cells_are_pixels: true,
+            cells_are_pixels: false,
             has_cells: false,
             covered: Sums([0; LANES]),
             drawn: 0,
