@@ -82,8 +82,8 @@ struct Steps8 {
 
 const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
 
-/// Memory for listed spans: the steps of their triangles, their records and their bytes. A frame within an error budget
-/// draws a hundred lists, so clearing it for each would take 3 % of the time.
+/// Memory for listed spans: the steps of their triangles, their records and their bytes. Within an error budget a torus
+/// is drawn in some seventy runs; clearing this for each would take 0.9 % of a frame's instructions.
 #[derive(Debug)]
 pub(crate) struct ShadedData {
     steps: [Steps8; Batches::COUNT],

@@ -349,8 +349,8 @@ impl SpanList {
         })
     }
 
-    /// Calls a loop that tests depths for each span, with its fill, its pixels and cells,
-    /// its first depth and its depth step. Returns the sum of the loop's results.
+    /// Calls a loop that tests depths for each span, with its fill, its pixels and cells, its first depth and its depth
+    /// step. Returns the sum of the loop's results.
     #[inline(always)]
     pub(super) fn each_tested<D: Cell>(
         &self,

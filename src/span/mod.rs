@@ -256,8 +256,7 @@ impl Kernel {
     }
 
     /// Fills every span, in order, with shades in 16.16; if there are cells, only where they are nearer. `shades`
-    /// returns the first shade and the step of a span, given its fill. Returns the number of
-    /// pixels that were nearer.
+    /// returns the first shade and the step of a span, given its fill. Returns the number of pixels that were nearer.
     #[inline(always)]
     pub(crate) fn fill_spans_16_16(
         self,
