@@ -23,7 +23,7 @@ use super::setup::{Basis, Corners8, Floats, Ints, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, each};
 use crate::simd::Lanes8;
-use crate::span::texture::{PerspectiveSums, fits_singles};
+use crate::span::texture::{PerspectiveSums, singles_margin};
 
 /// Texture coordinates u and v of each corner of up to eight triangles, in texels with 16 fraction bits; 0 in lanes
 /// without a triangle.
@@ -293,8 +293,8 @@ pub(super) struct PerspectivePlanes8 {
     step: [Floats; 3],
     /// The base of u and v: what has been subtracted from the corners' coordinates, a whole number of texels.
     base: [Ints; 2],
-    /// A bit for each triangle whose quotients may be taken in f32, see [`fits_singles`].
-    fits: u32,
+    /// How far quotients in f32 may be off, or 0 where they may not be taken: see [`singles_margin`].
+    margin: Ints,
     /// The steps rounded to f32.
     single_step: [[f32; LANES]; 3],
     /// Change per row.
@@ -310,7 +310,7 @@ impl PerspectivePlanes8 {
         first: [[0.0; LANES]; 3],
         step: [[0.0; LANES]; 3],
         base: [[0; LANES]; 2],
-        fits: 0,
+        margin: [0; LANES],
         single_step: [[0.0; LANES]; 3],
         row_step: [[0.0; LANES]; 3],
         fits_levels: 0,
@@ -332,7 +332,8 @@ impl PerspectivePlanes8 {
         let [spread, least] = basis.conditions(s, ends);
         let spread = s.mul(s.add(range, s.splat_f64(65_536.0)), spread);
         let is_sure = s.is_less(spread, s.mul(least, s.splat_f64(8_796_093_022_208.0)));
-        self.fits = s.to_bitmask(s.and(fits_singles(s, range, ends), is_sure));
+        let margin = s.select_i32(is_sure, singles_margin(s, range, ends), s.splat_i32(0));
+        s.store_i32(margin, &mut self.margin);
         let mut values = [u, v, depths];
         for of_corners in &mut values[..2] {
             for corner in 0..3 {
@@ -504,7 +505,7 @@ impl PerspectivePlanes8 {
         for i in 0..3 {
             (self.step[i][0], self.row_step[i][0]) = (steps[i], row_steps[i]);
         }
-        (self.base, self.fits, self.single_level[0]) = ([[0; LANES]; 2], 0, -1);
+        (self.base, self.margin[0], self.single_level[0]) = ([[0; LANES]; 2], 0, -1);
         // Q·κ·(1 + κ) < 2⁴².
         let greatest_of = |most: u32, coordinate: &i32| most.max(coordinate.unsigned_abs());
         let q = f64::from(coordinates.as_flattened().iter().fold(0, greatest_of)) + 65_536.0;
@@ -523,14 +524,16 @@ impl PerspectivePlanes8 {
             numerators: [[u, du[lane]], [v, dv[lane]]],
             divisors: [d, dd[lane]],
             base: [self.base[0][lane], self.base[1][lane]],
+            margin: 0,
         }
     }
 
-    /// The sums rounded to f32, if quotients may be taken in f32: see [`fits_singles`].
+    /// The sums rounded to f32, if quotients may be taken in f32: see [`singles_margin`].
     #[inline(always)]
     pub(super) fn singles(&self, lane: usize, sums: impl FnOnce() -> [f64; 3]) -> Option<PerspectiveSums<f32>> {
         let lane = lane % LANES;
-        if self.fits >> lane & 1 == 0 {
+        let margin = self.margin[lane];
+        if margin == 0 {
             return None;
         }
         // Rounds.
@@ -539,6 +542,7 @@ impl PerspectivePlanes8 {
             numerators: [[u, du[lane]], [v, dv[lane]]],
             divisors: [d, dd[lane]],
             base: [self.base[0][lane], self.base[1][lane]],
+            margin,
         })
     }
 }

@@ -1024,7 +1024,7 @@ mod tests {
     fn sums_are_right(
         triangle: &SortedTriangle,
         texture: &[[i32; 2]; 3],
-        &PerspectiveSums { numerators: [u, v], divisors, base }: &PerspectiveSums<f64>,
+        &PerspectiveSums { numerators: [u, v], divisors, base, .. }: &PerspectiveSums<f64>,
         (x, y): (i32, i32),
     ) -> Result<(), TestCaseError> {
         prop_assert!(base.iter().all(|base| base % 65_536 == 0));

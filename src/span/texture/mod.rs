@@ -29,7 +29,7 @@ pub(crate) use self::along::{
 #[cfg(feature = "internals")]
 pub use self::perspective::fill_perspective;
 #[cfg(feature = "alloc")]
-pub(crate) use self::perspective::{PerspectiveSums, fits_singles, perspective_along, singles_along, singles_pair};
+pub(crate) use self::perspective::{PerspectiveSums, perspective_along, singles_along, singles_margin, singles_pair};
 #[cfg(feature = "alloc")]
 pub(crate) use self::tint::{Blended, Fogged, Painted, PairValues, SpanValues, Tint, Untextured};
 
