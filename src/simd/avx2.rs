@@ -1,5 +1,6 @@
 //! [`Lanes8`] with AVX2 and FMA: 64-bit lanes in two halves.
 
+use core::arch::asm;
 use core::arch::x86_64::*;
 
 #[cfg(feature = "alloc")]
@@ -23,6 +24,43 @@ macro_rules! halves {
         let $half = 1;
         [of, $value]
     }};
+}
+
+/// The lower halves of eight lanes.
+#[inline(always)]
+unsafe fn words(from: __m256i) -> __m128i {
+    // SAFETY: the caller has AVX2.
+    unsafe {
+        let from = _mm256_and_si256(from, _mm256_set1_epi32(0xFFFF));
+        _mm_packus_epi32(_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from))
+    }
+}
+
+/// Moves eight words to registers by halves. Without the assembly, the compiler would extract one after the other, which
+/// takes twice as many operations on the vector.
+#[inline(always)]
+pub(super) unsafe fn words_by_halves(words: __m128i) -> [u16; 8] {
+    let (low, high);
+    // SAFETY: the caller has AVX2.
+    unsafe {
+        asm!("vmovq {}, {}", lateout(reg) low, in(xmm_reg) words, options(pure, nomem, nostack, preserves_flags));
+        asm!("vpextrq {}, {}, 1", lateout(reg) high, in(xmm_reg) words, options(pure, nomem, nostack, preserves_flags));
+    }
+    super::words_of([low, high])
+}
+
+/// Joins eight bytes that are loaded straight into a vector.
+#[inline(always)]
+pub(super) unsafe fn join_bytes(bytes: [u8; 8]) -> [u8; 8] {
+    // Not by `map`, which the compiler would turn into other vectors.
+    let (a, b, c, d) = (i32::from(bytes[0]), i32::from(bytes[1]), i32::from(bytes[2]), i32::from(bytes[3]));
+    let (e, f, g, h) = (i32::from(bytes[4]), i32::from(bytes[5]), i32::from(bytes[6]), i32::from(bytes[7]));
+    // SAFETY: the caller has AVX2.
+    unsafe {
+        let joined = _mm_insert_epi8::<2>(_mm_insert_epi8::<1>(_mm_cvtsi32_si128(a), b), c);
+        let joined = _mm_insert_epi8::<5>(_mm_insert_epi8::<4>(_mm_insert_epi8::<3>(joined, d), e), f);
+        _mm_cvtsi128_si64(_mm_insert_epi8::<7>(_mm_insert_epi8::<6>(joined, g), h)).to_le_bytes()
+    }
 }
 
 /// Widens the masks of 32-bit lanes to masks of the 64-bit lanes of both halves.
@@ -138,15 +176,16 @@ impl Lanes8 for Avx2 {
         fn splat_i32(value: i32) -> __m256i { _mm256_set1_epi32(value) }
         fn store_i32(from: __m256i, to: &mut [i32; 8]) { _mm256_storeu_si256(to.as_mut_ptr().cast(), from) }
         fn low_words(from: __m256i) -> [u16; 8] {
-            let from = _mm256_and_si256(from, _mm256_set1_epi32(0xFFFF));
-            let words = _mm_packus_epi32(_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
+            let words = words(from);
             super::words_of([_mm_cvtsi128_si64(words), _mm_extract_epi64::<1>(words)])
         }
+        fn low_words_in_bulk(from: __m256i) -> [u16; 8] { words_by_halves(words(from)) }
         fn low_bytes(from: __m256i) -> [u8; 8] {
             let fours = _mm256_shuffle_epi8(from, _mm256_set1_epi32(0x0C08_0400));
             let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256::<1>(fours));
             _mm_cvtsi128_si64(eight).to_le_bytes()
         }
+        fn join_bytes(bytes: [u8; 8]) -> [u8; 8] { join_bytes(bytes) }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }
         fn mul_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_mullo_epi32(a, b) }

@@ -111,6 +111,17 @@ pub(crate) trait Lanes8: Copy {
         self.store_i32(from, &mut lanes);
         crate::lanes::each!(lane => lanes[lane] as u16)
     }
+    /// The [`low_words`](Self::low_words), with fewer operations that take longer: for full blocks of long rows.
+    #[inline(always)]
+    fn low_words_in_bulk(self, from: Self::I32) -> [u16; 8] {
+        self.low_words(from)
+    }
+    /// These bytes, each of which may be loaded by an index, to be written at once. Where the level can, they are
+    /// joined in a vector, which takes longer, with fewer operations: for full blocks of long rows.
+    #[inline(always)]
+    fn join_bytes(self, bytes: [u8; 8]) -> [u8; 8] {
+        bytes
+    }
     fn add_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn sub_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;
     fn mul_i32(self, a: Self::I32, b: Self::I32) -> Self::I32;

@@ -236,7 +236,7 @@ impl Destination for Masked<'_> {
         let DrawnPixels { at, length, stays, .. } = pixels;
         if stays != u64::MAX {
             if let Some(block) = chunk_at(self.pixels, at) {
-                show_block(s, (block, stays), texels, (tint, along), &mut offsets);
+                show_block::<S, T, false>(s, (block, stays), texels, (tint, along), &mut offsets);
             }
             return;
         }

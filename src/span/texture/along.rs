@@ -23,24 +23,24 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     let last = texels.bytes.len() - 1;
     let (mut rest, mut left) = (row, length);
     while left > 0 {
-        let offsets = s.low_words(offsets.next());
-        let Some(pixels) = rest.first_chunk::<LANES>() else {
+        let offsets = offsets.next();
+        let Some(&pixels) = rest.first_chunk::<LANES>() else {
             // At the frame's end.
             let mut pixels = [0; LANES];
             for (to, pixel) in pixels.iter_mut().zip(&*rest) {
                 *to = *pixel;
             }
-            let rows = tint.rows(s, along, &pixels);
+            let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
             for (k, pixel) in rest.iter_mut().take(left).enumerate() {
                 *pixel = texel(tint, rows, offsets, (texels, last), k % LANES);
             }
             return;
         };
-        let rows = tint.rows(s, along, pixels);
         // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged.
         if left <= FOUR
             && let Some(row) = rest.first_chunk_mut()
         {
+            let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
             let mask = u32::MAX >> (8 * (FOUR - left));
             let bytes = u32::from_le_bytes([
                 texel(tint, rows, offsets, (texels, last), 0),
@@ -53,16 +53,14 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
         }
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
         if left < LANES {
+            let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets));
             let mask = u64::MAX >> (8 * (LANES - left));
             let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, (texels, last), k));
             *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
             return;
         }
-        let mut k = 0;
-        while k < LANES {
-            block[k] = texel(tint, rows, offsets, (texels, last), k);
-            k += 1;
-        }
+        let (rows, offsets) = (tint.rows::<S, true>(s, along, block), s.low_words_in_bulk(offsets));
+        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, (texels, last), k)));
         (rest, left) = (behind, left - LANES);
     }
 }
@@ -84,7 +82,7 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     for &stays in masks {
         if rest.len() < LANES {
             // At the frame's end.
-            let rows = tint.rows(s, along, &[0; LANES]);
+            let rows = tint.rows::<S, false>(s, along, &[0; LANES]);
             let offsets = s.low_words(offsets.next());
             for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
                 if stay == 0 {
@@ -96,17 +94,17 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
         rest = behind;
         if stays == u64::MAX {
-            tint.rows(s, along, block);
+            tint.rows::<S, false>(s, along, block);
             offsets.skip();
         } else {
-            show_block(s, (block, stays), texels, (tint, along), &mut offsets);
+            show_block::<S, T, true>(s, (block, stays), texels, (tint, along), &mut offsets);
         }
     }
 }
 
 /// Shows texels in eight pixels, except for those that the mask leaves unchanged.
 #[inline(always)]
-pub(crate) fn show_block<S: Lanes8, T: Tint>(
+pub(crate) fn show_block<S: Lanes8, T: Tint, const IN_BULK: bool>(
     s: S,
     (block, stays): (&mut [u8; LANES], u64),
     texels: Texels<'_>,
@@ -120,15 +118,11 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
     let image = (texels, texels.bytes.len() - 1);
     // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case
     // extracts its own lanes: all of them, extracted up front, would not fit into the registers.)
-    if stays == 0 && !IS_COMPACT {
-        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
-        let mut k = 0;
-        while k < LANES {
-            block[k] = texel(tint, rows, offsets, image, k);
-            k += 1;
-        }
+    if IN_BULK && stays == 0 && !IS_COMPACT {
+        let (rows, offsets) = (tint.rows::<S, true>(s, along, block), s.low_words_in_bulk(offsets.next()));
+        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, image, k)));
     } else if stays >> 32 == u64::from(u32::MAX) {
-        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
+        let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets.next()));
         let Some(four) = block.first_chunk_mut() else { return };
         // The lower half.
         let stay = stays as u32;
@@ -140,7 +134,7 @@ pub(crate) fn show_block<S: Lanes8, T: Tint>(
         ]);
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     } else {
-        let (rows, offsets) = (tint.rows(s, along, block), s.low_words(offsets.next()));
+        let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets.next()));
         let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, image, k));
         *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }
@@ -162,7 +156,7 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     }
     let (image, offsets) = ((texels, texels.bytes.len() - 1), s.low_words(offsets));
     // Tints that read pixels are not shown in pairs.
-    let rows = tint.rows(s, &mut tint.begin(s, values), &[0; LANES]);
+    let rows = tint.rows::<S, false>(s, &mut tint.begin(s, values), &[0; LANES]);
     let low = u32::from_le_bytes([
         texel(tint, rows, offsets, image, 0),
         texel(tint, rows, offsets, image, 1),

@@ -27,7 +27,8 @@ pub(crate) trait Tint: Copy {
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Self::Along<S>;
     /// The table rows of the next eight pixels, whose current bytes are `pixels`; advances the
     /// state.
-    fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows;
+    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES])
+    -> Self::Rows;
     /// The byte for a texel of pixel `k` of eight.
     fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
 }
@@ -67,10 +68,16 @@ impl<S: Lanes8> Ramps<S> for PairValues<S> {
     }
 }
 
+/// The lower half of each lane, in the way that suits a full block of a long row if `IN_BULK`, otherwise a short one.
+#[inline(always)]
+pub(super) fn words<S: Lanes8, const IN_BULK: bool>(s: S, from: S::I32) -> [u16; LANES] {
+    if const { IN_BULK } { s.low_words_in_bulk(from) } else { s.low_words(from) }
+}
+
 /// The integer parts of eight values, in the upper bytes: rows of a table. Advances to the next eight.
 #[inline(always)]
-fn rows_of<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
-    let rows = s.low_words(s.and_i32(*values, s.splat_i32(0xFF00)));
+fn rows_of<S: Lanes8, const IN_BULK: bool>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
+    let rows = words::<S, IN_BULK>(s, s.and_i32(*values, s.splat_i32(0xFF00)));
     *values = s.add_i32(*values, *next);
     rows
 }
@@ -82,7 +89,7 @@ impl Tint for () {
     #[inline(always)]
     fn begin<S: Lanes8>(self, _: S, _: impl Ramps<S>) {}
     #[inline(always)]
-    fn rows<S: Lanes8>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    fn rows<S: Lanes8, const IN_BULK: bool>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
     #[inline(always)]
     fn show(self, (): (), _: usize, texel: u8) -> u8 {
         texel
@@ -110,8 +117,8 @@ impl Tint for Painted<'_> {
         )
     }
     #[inline(always)]
-    fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
-        rows_of(s, along)
+    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
+        rows_of::<S, IN_BULK>(s, along)
     }
     #[inline(always)]
     fn show(self, rows: [u16; LANES], k: usize, texel: u8) -> u8 {
@@ -135,7 +142,7 @@ impl Tint for Untextured {
         )
     }
     #[inline(always)]
-    fn rows<S: Lanes8>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
+    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
         let shades = s.low_bytes(s.shr_i32(*values, 8));
         *values = s.add_i32(*values, *next);
         shades
@@ -160,8 +167,8 @@ impl<T: Tint> Tint for Blended<'_, T> {
         self.0.begin(s, of)
     }
     #[inline(always)]
-    fn rows<S: Lanes8>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
-        (self.0.rows(s, along, pixels), *pixels)
+    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
+        (self.0.rows::<S, IN_BULK>(s, along, pixels), *pixels)
     }
     #[inline(always)]
     fn show(self, (rows, pixels): Self::Rows, k: usize, texel: u8) -> u8 {
@@ -187,8 +194,13 @@ impl<T: Tint> Tint for Fogged<'_, T> {
         (self.0.begin(s, of), fog)
     }
     #[inline(always)]
-    fn rows<S: Lanes8>(self, s: S, (along, fog): &mut Self::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
-        (self.0.rows(s, along, pixels), rows_of(s, fog))
+    fn rows<S: Lanes8, const IN_BULK: bool>(
+        self,
+        s: S,
+        (along, fog): &mut Self::Along<S>,
+        pixels: &[u8; LANES],
+    ) -> Self::Rows {
+        (self.0.rows::<S, IN_BULK>(s, along, pixels), rows_of::<S, IN_BULK>(s, fog))
     }
     #[inline(always)]
     fn show(self, (rows, levels): Self::Rows, k: usize, texel: u8) -> u8 {
