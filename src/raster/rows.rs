@@ -561,11 +561,12 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let mut is_row = s.is_greater(rows.length, s.splat_i32(0));
     // Columns of the frame relative to the box's first. All are below 4,096.
     let side = |column: u32| s.splat_f64(ROUND_MAGIC + f64::from(column as i32 - setup.column[i % LANES]));
-    let (mut left, mut last) = (ends.left, ends.right);
+    let (mut left, mut last, mut right) = (ends.left, ends.right, ends.right);
     if let Some(clip) = clip {
         // A row that begins left of the frame is seeded at the frame's side.
         left = s.max(left, side(0));
         last = s.min(last, side(width));
+        right = s.min(right, side(clip.x1));
         let number = s.add_i32(s.splat_i32(setup.row[i % LANES] + first), s.load_i32(&NUMBERS));
         is_row = s.and(is_row, s.is_greater(number, s.splat_i32(clip.y0 as i32 - 1)));
         is_row = s.and(is_row, s.is_greater(s.splat_i32(clip.y1 as i32), number));
@@ -579,11 +580,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         let spans = if are_whole {
             rows.spans(s, setup, shades, i)
         } else {
-            let (mut start, mut right) = (left, s.min(ends.right, end));
-            if let Some(clip) = clip {
-                start = s.max(left, side(clip.x0));
-                right = s.min(right, side(clip.x1));
-            }
+            let start = if let Some(clip) = clip { s.max(left, side(clip.x0)) } else { left };
             let parts = Parts { row: row_origin, end: last, seed: left, start };
             let mut fill = shades.fill_of(s, lane, setup, ends, &parts);
             if P::IS_LINEAR && clip.is_some() {
@@ -591,7 +588,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
                 fill = advance(s, fill, s.sub_i32(s.low_bits(start), s.low_bits(left)));
             }
             let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
-            let length = s.sub_i32(s.low_bits(right), s.low_bits(start));
+            let length = s.sub_i32(s.low_bits(s.min(right, end)), s.low_bits(start));
             Spans8 {
                 at: s.add_i32(rows.at, moved),
                 cell: s.add_i32(rows.cell, moved),
@@ -602,7 +599,7 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         };
         list.append(s, &spans, depth_steps(setup, i, has_depths));
         left = end;
-        if are_whole || s.to_bitmask(s.is_less(left, ends.right)) == 0 {
+        if are_whole || s.to_bitmask(s.is_less(left, right)) == 0 {
             break;
         }
     }
