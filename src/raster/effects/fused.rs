@@ -10,7 +10,7 @@ use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
 use crate::span::list::Target;
-use crate::span::texture::{Blended, FirstOffset, Fogged, Texels, Tint, Untextured};
+use crate::span::texture::{Blended, FirstOffset, Fogged, FoggedShades, Texels, Tint};
 
 impl Direct<'_> {
     /// Draws the pixels of every span, fogged or blended as the pipeline says; if there are cells,
@@ -61,7 +61,7 @@ impl Direct<'_> {
     #[inline(never)]
     fn show_fogged(self, spans: &Spans<'_>, fog: &[u8; 65_536], to: &mut Masked<'_>, kernel: Kernel) -> Option<()> {
         match self {
-            Self::Shades => show_shades(kernel.simd_level(), spans, Fogged(Untextured, fog), to),
+            Self::Shades => show_shades(kernel.simd_level(), spans, FoggedShades(fog), to),
             Self::Texture { image, painted, .. } => show_texture(spans, image, Fogged(painted, fog), to, kernel),
         }
         Some(())

@@ -31,7 +31,7 @@ pub use self::perspective::fill_perspective;
 #[cfg(feature = "alloc")]
 pub(crate) use self::perspective::{PerspectiveSums, perspective_along, singles_along, singles_margin, singles_pair};
 #[cfg(feature = "alloc")]
-pub(crate) use self::tint::{Blended, Fogged, Painted, PairValues, SpanValues, Tint, Untextured};
+pub(crate) use self::tint::{Blended, Fogged, FoggedShades, Painted, PairValues, SpanValues, Tint};
 
 /// A texture's bytes, row by row, with its size.
 #[derive(Clone, Copy, Debug)]

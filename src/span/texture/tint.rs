@@ -126,30 +126,45 @@ impl Tint for Painted<'_> {
     }
 }
 
-/// The shades of the span alone; texels are ignored.
+/// The shades of the span, fogged by a table with a row for each level of fog; texels are ignored.
 #[derive(Clone, Copy)]
-pub(crate) struct Untextured;
+pub(crate) struct FoggedShades<'a>(pub(crate) &'a [u8; 65_536]);
 
-impl Tint for Untextured {
-    type Along<S: Lanes8> = Ramp8<S>;
-    type Rows = [u8; LANES];
+impl Tint for FoggedShades<'_> {
+    const HAS_FOG: bool = true;
+    type Along<S: Lanes8> = [Ramp8<S>; 2];
+    /// Indices of the table.
+    type Rows = [u16; LANES];
     #[inline(always)]
-    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Ramp8<S> {
-        of.ramp(
-            s,
-            #[inline(always)]
-            |values| values.shade,
-        )
+    fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> [Ramp8<S>; 2] {
+        [
+            of.ramp(
+                s,
+                #[inline(always)]
+                |values| values.fog,
+            ),
+            of.ramp(
+                s,
+                #[inline(always)]
+                |values| values.shade,
+            ),
+        ]
     }
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, [values, next]: &mut Ramp8<S>, _: &[u8; LANES]) -> [u8; LANES] {
-        let shades = s.low_bytes(s.shr_i32(*values, 8));
-        *values = s.add_i32(*values, *next);
-        shades
+    fn rows<S: Lanes8, const IN_BULK: bool>(
+        self,
+        s: S,
+        [[fog, next_fog], [shades, next_shades]]: &mut [Ramp8<S>; 2],
+        _: &[u8; LANES],
+    ) -> [u16; LANES] {
+        let low = s.and_i32(s.shr_i32(*shades, 8), s.splat_i32(0xFF));
+        let indices = s.or_i32(s.and_i32(*fog, s.splat_i32(0xFF00)), low);
+        (*fog, *shades) = (s.add_i32(*fog, *next_fog), s.add_i32(*shades, *next_shades));
+        words::<S, IN_BULK>(s, indices)
     }
     #[inline(always)]
-    fn show(self, shades: [u8; LANES], k: usize, _: u8) -> u8 {
-        shades[k]
+    fn show(self, indices: [u16; LANES], k: usize, _: u8) -> u8 {
+        self.0[usize::from(indices[k])]
     }
 }
 
