@@ -382,6 +382,8 @@ pub(crate) struct Records {
     count: usize,
 }
 
+const _: () = assert!(Records::CAPACITY == 256, "an index takes eight bits of a span's fill");
+
 impl Records {
     /// Number of records that there can be: those of 64 triangles of up to four rows.
     const CAPACITY: usize = 256;
