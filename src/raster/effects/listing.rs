@@ -210,6 +210,8 @@ struct Wanted {
     texture: Option<Mapping>,
     /// The last level of the image, if it has any.
     last_level: Option<u32>,
+    /// True if a stage reads the shade at the first pixel of a span.
+    shade: bool,
     /// Linear values, each in its slot.
     values: [Option<Value>; Value::MAX_COUNT],
     /// Slots up to the last one in use.
@@ -234,8 +236,9 @@ impl Wanted {
             want(Value::Slope(i), by_table && !channels && i < 2);
         }
         let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud));
+        let shade = !reseeds || matches!(pipeline.source, ShadeSource::Shaded(Interpolation::GouraudReseeded));
         let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
-        Self { texture, last_level, values, slots, reseeds }
+        Self { texture, last_level, shade, values, slots, reseeds }
     }
 }
 
@@ -324,7 +327,7 @@ impl ListedFaces<'_> {
         s.apart(
             #[inline(always)]
             move || {
-                let basis = setup.set_up(s, corners, of, true);
+                let basis = setup.set_up(s, corners, of, self.wanted.shade);
                 self.set_up_planes(s, &basis, corners, setup);
             },
         );
@@ -545,9 +548,11 @@ impl Shades8 for EffectSpans<'_> {
         let SpanData { numbers, coordinates, sums, planes } = &mut **data;
         let (planes, record) = (&planes[batches.current()], records.begin());
         let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
-        let Wanted { values, slots, reseeds, texture, .. } = *wanted;
+        let Wanted { shade, values, slots, reseeds, texture, .. } = *wanted;
         let inverse = &setup.inverse;
-        numbers.put(s, record, 2, value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds));
+        if shade {
+            numbers.put(s, record, 2, value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds));
+        }
         for (slot, value) in values.iter().enumerate().take(slots) {
             if let Some(value) = value {
                 let reseeds = reseeds || !matches!(value, Value::Channel(_));
