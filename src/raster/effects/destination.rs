@@ -225,15 +225,15 @@ impl Destination for Masked<'_> {
         &mut self,
         s: S,
         (spans, i, before): (&Spans<'_>, usize, u32),
-        mut pixels: DrawnPixels,
+        pixels: DrawnPixels,
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         mut offsets: impl OffsetsAlong<S>,
     ) {
+        let DrawnPixels { at, length, mut stays, .. } = pixels;
         if !pixels.is_tested {
             let Some(tested) = self.test(s, spans, i, pixels) else { return };
-            pixels = tested;
+            stays = tested.stays;
         }
-        let DrawnPixels { at, length, stays, .. } = pixels;
         if stays != u64::MAX {
             if let Some(block) = chunk_at(self.pixels, at) {
                 show_block::<S, T, false>(s, (block, stays), texels, (tint, along), &mut offsets);
