@@ -146,7 +146,14 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
             );
             i += 2;
         } else {
-            show_line((spans, i), spans.affine_start(i), (image, offsets), tint, to);
+            show_line(
+                (spans, i),
+                #[inline(always)]
+                || spans.affine_start(i),
+                (image, offsets),
+                tint,
+                to,
+            );
             i += 1;
         }
     }
@@ -185,16 +192,23 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
             (texels, shown) = (all[level.level as usize % LEVELS], level.level);
             offsets = OffsetLanes::of_level(s, (texels, 0));
         }
-        show_line((spans, i), [level.of(start), level.of(step)], (texels, offsets), tint, to);
+        show_line(
+            (spans, i),
+            #[inline(always)]
+            || [level.of(start), level.of(step)],
+            (texels, offsets),
+            tint,
+            to,
+        );
     }
 }
 
-/// Draws the texels of span `i`, from their coordinates at its first pixel on, and the change per
-/// pixel.
+/// Draws the texels of span `i`. `line` returns their coordinates at its first pixel, and the change per pixel: once
+/// pixels turn out to be drawn, so that numbers are broadcast from memory.
 #[inline(always)]
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     (spans, i): (&Spans<'_>, usize),
-    line: [[u32; 2]; 2],
+    line: impl FnOnce() -> [[u32; 2]; 2],
     (image, offsets): (Texels<'_>, OffsetLanes<S>),
     tint: T,
     to: &mut D,
@@ -202,7 +216,7 @@ fn show_line<S: Lanes8, T: Tint, D: Destination>(
     let s = offsets.s;
     let Some(pixels) = to.begin(s, spans, i) else { return };
     let along = &mut tint.begin(s, spans.values::<T>(i, pixels.skipped));
-    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(offsets, image, line, pixels.skipped));
+    to.show(s, (spans, i, 0), pixels, (image, tint, along), AffineAlong::new(offsets, image, line(), pixels.skipped));
 }
 
 #[inline(always)]
