@@ -4,7 +4,7 @@
 use super::spans::Spans;
 use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
-use crate::simd::{F32Lanes8, Lanes8};
+use crate::simd::Lanes8;
 use crate::span::depth_test::{Masks, test_blocks};
 use crate::span::list::{SpanDepth, chunk_at};
 use crate::span::texture::{FOUR, OffsetsAlong, Texels, Tint, show_along, show_block, show_masked};
@@ -85,14 +85,12 @@ impl DrawnPixels {
 pub(super) struct Pair {
     /// Where the pixels of each begin.
     pub(super) at: [usize; 2],
-    /// How many leading pixels of each are skipped.
-    pub(super) skipped: [u32; 2],
     /// How many pixels of each there are.
     lengths: [usize; 2],
 }
 
 impl Pair {
-    /// Spans `i` and `i + 1`, if they are short and `T` can show both at once.
+    /// Spans `i` and `i + 1`, if they are short, nothing of them is skipped, and `T` can show both at once.
     #[inline(always)]
     pub(super) fn of<T: Tint, D: Destination>(to: &mut D, spans: &Spans<'_>, i: usize) -> Option<Self> {
         let (a, length_a, skipped_a) = to.span(spans, i);
@@ -102,10 +100,10 @@ impl Pair {
             return None;
         }
         let (b, length_b, skipped_b) = to.span(spans, i + 1);
-        if length_b > FOUR || a.max(b) + FOUR > to.all().len() {
+        if length_b > FOUR || skipped_a | skipped_b != 0 || a.max(b) + FOUR > to.all().len() {
             return None;
         }
-        Some(Self { at: [a, b], skipped: [skipped_a, skipped_b], lengths: [length_a, length_b] })
+        Some(Self { at: [a, b], lengths: [length_a, length_b] })
     }
 
     /// The mask of the pixels that stay as they are, four for each span.
@@ -113,21 +111,6 @@ impl Pair {
     pub(super) fn stays(&self) -> u64 {
         let [low, high] = self.lengths;
         behind(low) & u64::from(u32::MAX) | behind(high) << 32
-    }
-
-    /// The indices of the pixels in their spans.
-    #[inline(always)]
-    pub(super) fn numbers<S: Lanes8>(&self, s: S) -> S::I32 {
-        let [a, b] = self.skipped;
-        // At most 63.
-        s.add_i32(s.load_i32(&[0, 1, 2, 3, 0, 1, 2, 3]), s.halves_i32([a.cast_signed(), b.cast_signed()]))
-    }
-
-    /// The [`numbers`](Self::numbers) in f32.
-    #[inline(always)]
-    pub(super) fn numbers_f32<S: F32Lanes8>(&self, s: S) -> S::F32 {
-        let [a, b] = self.skipped;
-        s.add_f32(s.load_f32(&[0.0, 1.0, 2.0, 3.0, 0.0, 1.0, 2.0, 3.0]), s.halves_f32([a as f32, b as f32]))
     }
 }
 

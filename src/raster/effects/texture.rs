@@ -142,7 +142,7 @@ fn show_affine_by<S: Lanes8, T: Tint, D: Destination>(s: S, spans: &Spans<'_>, i
                 (image, tint),
                 to,
                 #[inline(always)]
-                || affine_pair(s, image, [spans.affine_start(i), spans.affine_start(i + 1)], pair.numbers(s)),
+                || affine_pair(s, image, [spans.affine_start(i), spans.affine_start(i + 1)]),
             );
             i += 2;
         } else {
@@ -168,8 +168,7 @@ fn show_two<S: Lanes8, T: Tint, D: Destination>(
     to: &mut D,
     offsets: impl FnOnce() -> S::I32,
 ) {
-    // The numbers start after the skipped pixels.
-    let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)], pair.numbers(s));
+    let values = PairValues([spans.values::<T>(i, 0), spans.values::<T>(i + 1, 0)]);
     show_pair(s, (to.all(), pair.at, pair.stays()), image, (tint, values), offsets());
 }
 
@@ -241,8 +240,8 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
                 to,
                 #[inline(always)]
                 || {
-                    let (offsets, is_unsure) = singles_pair(s, image, [first, second], pair.numbers_f32(s));
-                    if is_unsure { s.load_i32(&exact_pair((spans, i), image, pair.skipped)) } else { offsets }
+                    let (offsets, is_unsure) = singles_pair(s, image, [first, second]);
+                    if is_unsure { s.load_i32(&exact_pair((spans, i), image)) } else { offsets }
                 },
             );
             i += 2;
@@ -259,11 +258,10 @@ fn show_exact_by<S: F32Lanes8, T: Tint, D: Destination>(
 /// The offsets of the first four texels of spans `i` and `i + 1`, where quotients cannot decide.
 #[cold]
 #[inline(never)]
-fn exact_pair((spans, i): (&Spans<'_>, usize), image: Texels<'_>, skipped: [u32; 2]) -> [i32; LANES] {
+fn exact_pair((spans, i): (&Spans<'_>, usize), image: Texels<'_>) -> [i32; LANES] {
     let (mut low, mut high) = ([0; LANES], [0; LANES]);
-    // At most 63.
-    exact_eight((spans, i), &mut None, (image, 0), skipped[0] as usize, &mut low);
-    exact_eight((spans, i + 1), &mut None, (image, 0), skipped[1] as usize, &mut high);
+    exact_eight((spans, i), &mut None, (image, 0), 0, &mut low);
+    exact_eight((spans, i + 1), &mut None, (image, 0), 0, &mut high);
     low[4..].copy_from_slice(&high[..4]);
     low
 }

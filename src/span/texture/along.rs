@@ -1,7 +1,7 @@
 //! Loops over the texels of a span: where they lie in their image, and how they are shown.
 
 use super::Texels;
-use super::tint::{PairValues, Tint};
+use super::tint::{NUMBERS_OF_PAIR, PairValues, Tint};
 use crate::fixed::IS_COMPACT;
 use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
@@ -147,7 +147,7 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     s: S,
     (all, [a, b], stays): (&mut [u8], [usize; 2], u64),
     texels: Texels<'_>,
-    (tint, values): (T, PairValues<S>),
+    (tint, values): (T, PairValues),
     offsets: S::I32,
 ) {
     // Never true: see `show_along`.
@@ -267,14 +267,14 @@ impl<S: Lanes8> AffineAlong<S> {
     }
 }
 
-/// The offsets of the texels with these numbers along two lines, as in [`AffineAlong`].
+/// The offsets of the first four texels along two lines, as in [`AffineAlong`].
 #[inline(always)]
 pub(crate) fn affine_pair<S: Lanes8>(
     s: S,
     texels: Texels<'_>,
     [[[u, v], [du, dv]], [[u2, v2], [du2, dv2]]]: [[[u32; 2]; 2]; 2],
-    numbers: S::I32,
 ) -> S::I32 {
+    let numbers = s.load_i32(&NUMBERS_OF_PAIR);
     let pair = |a: u32, b: u32| [a.cast_signed(), b.cast_signed()];
     let u = s.add_i32(s.halves_i32(pair(u, u2)), s.mul_i32(s.halves_i32(pair(du, du2)), numbers));
     let v = s.add_i32(s.halves_i32(pair(v, v2)), s.mul_i32(s.halves_i32(pair(dv, dv2)), numbers));

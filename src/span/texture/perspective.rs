@@ -2,6 +2,7 @@
 
 use super::Texels;
 use super::along::{OffsetLanes, OffsetsAlong, show_along};
+use super::tint::NUMBERS_OF_PAIR;
 use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8};
@@ -111,15 +112,15 @@ pub(crate) fn singles_along<S: F32Lanes8>(
     PerspectiveAlong { offsets: quotients.offsets, quotients, numbers, first, exact }
 }
 
-/// The offsets of the texels with these numbers along two spans, by quotients in f32 as in [`singles_along`]; and
+/// The offsets of the first four texels along two spans, by quotients in f32 as in [`singles_along`]; and
 /// whether any of them is undecided.
 #[inline(always)]
 pub(crate) fn singles_pair<S: F32Lanes8>(
     s: S,
     texels: Texels<'_>,
     [a, b]: [PerspectiveSums<f32>; 2],
-    numbers: S::F32,
 ) -> (S::I32, bool) {
+    let numbers = s.load_f32(&NUMBERS_OF_PAIR.map(|number| number as f32)); // at most 3
     let (([au, av], ad), ([bu, bv], bd)) = ((a.numerators, a.divisors), (b.numerators, b.divisors));
     let line = |a: [f32; 2], b: [f32; 2]| [s.halves_f32([a[0], b[0]]), s.halves_f32([a[1], b[1]])];
     let margin = s.halves_i32([a.margin, b.margin]);

@@ -55,16 +55,19 @@ impl<S: Lanes8> Ramps<S> for SpanValues {
     }
 }
 
-/// Four pixels of each of two spans, with the pixels' numbers in their spans. No pixels follow these.
-#[derive(Clone, Copy)]
-pub(crate) struct PairValues<S: Lanes8>(pub(crate) [SpanValues; 2], pub(crate) S::I32);
+/// The numbers of the first four pixels of two spans.
+pub(super) const NUMBERS_OF_PAIR: [i32; LANES] = [0, 1, 2, 3, 0, 1, 2, 3];
 
-impl<S: Lanes8> Ramps<S> for PairValues<S> {
+/// The first four pixels of each of two spans. No pixels follow these.
+#[derive(Clone, Copy)]
+pub(crate) struct PairValues(pub(crate) [SpanValues; 2]);
+
+impl<S: Lanes8> Ramps<S> for PairValues {
     #[inline(always)]
     fn ramp(self, s: S, of: impl Fn(SpanValues) -> u32) -> Ramp8<S> {
-        let Self([a, b], numbers) = self;
+        let Self([a, b]) = self;
         let values = s.halves_i32([of(a).cast_signed(), of(b).cast_signed()]);
-        [s.add_i32(values, s.mul_i32(s.shr_i32(values, 16), numbers)), s.splat_i32(0)]
+        [s.add_i32(values, s.mul_i32(s.shr_i32(values, 16), s.load_i32(&NUMBERS_OF_PAIR))), s.splat_i32(0)]
     }
 }
 
