@@ -142,8 +142,8 @@ impl<'a> SmoothingRule<'a> {
         const RIM: u8 = u8::MAX;
         let mut sharp = vec![0_u8; count];
         for ((a, b), here) in edges.each() {
-            let triangle = |place: usize| here[place].1 as usize / 3;
-            let is_inner = here.len() == 2 && [0, 1].iter().all(|&place| faces[triangle(place)].has_area());
+            let triangle = |side: usize| here[side].1 as usize / 3;
+            let is_inner = here.len() == 2 && [0, 1].iter().all(|&side| faces[triangle(side)].has_area());
             for point in [a as usize, b as usize] {
                 if !is_inner {
                     sharp[point] = RIM;
@@ -308,12 +308,12 @@ impl Mesh {
         let mut next = count as u32;
         let mut parts = Parts::default();
         for here in corners.chunk_by(|a, b| a.0 == b.0) {
-            let face = |place: u32| here[place as usize].1 as usize / 3;
+            let face = |index: u32| here[index as usize].1 as usize / 3;
             parts.find(here.len() as u32, |a, b| rule.is_smooth(faces, face(a), face(b)));
-            for (place, &(_, corner)) in (0..).zip(here) {
+            for (index, &(_, corner)) in (0..).zip(here) {
                 // The first face of a part comes before the others and represents it.
-                let stands = parts.sets.of(place);
-                classes[corner as usize] = if stands == place {
+                let stands = parts.sets.of(index);
+                classes[corner as usize] = if stands == index {
                     next += 1;
                     next - 1
                 } else {
@@ -370,15 +370,15 @@ impl Parts {
     fn find(&mut self, count: u32, linked: impl Fn(u32, u32) -> bool) {
         self.sets.renew(count);
         self.compared.clear();
-        for place in 0..count {
-            for other in self.compared.iter().copied().chain(place.saturating_sub(8)..place) {
-                if self.sets.of(other) != self.sets.of(place) && linked(other, place) {
-                    self.sets.join(other, place);
+        for index in 0..count {
+            for other in self.compared.iter().copied().chain(index.saturating_sub(8)..index) {
+                if self.sets.of(other) != self.sets.of(index) && linked(other, index) {
+                    self.sets.join(other, index);
                 }
             }
-            let is_alone = self.sets.of(place) == place && self.compared.len() < 4 * Self::COMPARED;
+            let is_alone = self.sets.of(index) == index && self.compared.len() < 4 * Self::COMPARED;
             if is_alone || self.compared.len() < Self::COMPARED {
-                self.compared.push(place);
+                self.compared.push(index);
             }
         }
     }

@@ -168,9 +168,9 @@ fn enclosing(
         let first = rays.partition_point(|&(row, _)| row <= low);
         for &(row, ray) in rays[first..].iter().take_while(|&&(row, _)| row <= high) {
             let own = wanted[ray];
-            let [column, _, place] = largest[own as usize].1;
+            let [column, _, depth] = largest[own as usize].1;
             let Some((from, to, step)) = cross_row(&corners, row).filter(|_| own != shell) else { continue };
-            if from[0] < column && column <= to[0] && between(from, to, column) < place {
+            if from[0] < column && column <= to[0] && between(from, to, column) < depth {
                 enclosing[ray].push((shell, step));
             }
         }

@@ -29,15 +29,15 @@ fn weld_by_hash<K: Iterator<Item = [u32; 3]>>(count: usize, keys: impl Fn() -> K
     // When half full, a search takes at most 2.5 probes on average (Knuth, The Art of Computer Programming, 6.4).
     let (mut next, mut left) = (0, count.saturating_mul(16) + 64);
     for key in keys() {
-        let mut place = hash(key) & (size - 1);
+        let mut slot = hash(key) & (size - 1);
         loop {
             left = left.checked_sub(1)?;
-            let (known, point) = &mut table[place];
+            let (known, point) = &mut table[slot];
             if *point == FREE {
                 (*known, *point) = (key, next);
                 next += 1;
             } else if *known != key {
-                place = (place + 1) & (size - 1);
+                slot = (slot + 1) & (size - 1);
                 continue;
             }
             points.push(*point);
@@ -113,10 +113,10 @@ impl Edges {
         let mut sorted = vec![(0, 0); sum as usize];
         for (triangle, corners) in surface() {
             for (i, (from, to)) in edges(corners).into_iter().enumerate() {
-                let place = &mut starts[from.min(to) as usize + 1];
+                let start = &mut starts[from.min(to) as usize + 1];
                 // Points are below 2³¹.
-                sorted[*place as usize] = (from.max(to) << 1 | u32::from(from > to), (3 * triangle + i) as u32);
-                *place += 1;
+                sorted[*start as usize] = (from.max(to) << 1 | u32::from(from > to), (3 * triangle + i) as u32);
+                *start += 1;
             }
         }
         let mut edges = Self { starts, edges: sorted };

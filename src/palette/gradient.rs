@@ -50,10 +50,10 @@ pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
         return None;
     }
     // Positions are stored as numerators over `entries − 1`.
-    let (place, scale) = if entries == 1 { (255, 1) } else { (i as i32 * 255, entries as i32 - 1) };
+    let (position, scale) = if entries == 1 { (255, 1) } else { (i as i32 * 255, entries as i32 - 1) };
     let mut below = keys[0];
     let mut k = 1;
-    while k < keys.len() && keys[k].at as i32 * scale <= place {
+    while k < keys.len() && keys[k].at as i32 * scale <= position {
         if keys[k].at > below.at {
             below = keys[k];
         }
@@ -64,11 +64,11 @@ pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
         k += 1;
     }
     let start = below.at as i32 * scale;
-    if k == keys.len() || place <= start {
+    if k == keys.len() || position <= start {
         return Some(below.color);
     }
     let above = keys[k];
-    let (along, length) = (place - start, above.at as i32 * scale - start);
+    let (along, length) = (position - start, above.at as i32 * scale - start);
     Some(Rgb::new(
         between(below.color.r, above.color.r, along, length),
         between(below.color.g, above.color.g, along, length),

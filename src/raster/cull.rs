@@ -334,7 +334,7 @@ mod tests {
 
     const MAX_UNITS: i32 = Vertex::GUARD_BAND;
 
-    fn place() -> impl Strategy<Value = ScreenPos> {
+    fn position() -> impl Strategy<Value = ScreenPos> {
         let near = (-300_i32..9_000, -300_i32..9_000);
         let on_centres = (-2_i32..34, -2_i32..34).prop_map(|(x, y)| (x * 256 + 128, y * 256 + 128));
         let far = (-MAX_UNITS..=MAX_UNITS, -MAX_UNITS..=MAX_UNITS);
@@ -388,18 +388,18 @@ mod tests {
         #[test]
         fn what_is_left_out_covers_nothing(
             culls: bool,
-            places in prop::collection::vec(place(), 1..60),
+            positions in prop::collection::vec(position(), 1..60),
             corners in prop::collection::vec((any::<u32>(), any::<u32>(), any::<u32>()), 0..=CHUNK),
             clip in prop_oneof![Just((0, 0, 32, 32)), (0_u32..20, 0_u32..20, 12_u32..=32, 12_u32..=32)],
         ) {
-            let index = |i: u32| i % places.len() as u32;
+            let index = |i: u32| i % positions.len() as u32;
             let triangles: Vec<[u32; 3]> = corners.iter().map(|&(a, b, c)| [index(a), index(b), index(c)]).collect();
             let clip = Rect { x0: clip.0, y0: clip.1, x1: clip.2, y1: clip.3 };
             let mut pixels = vec![0; 32 * 32];
             let frame = Frame::new(&mut pixels, 32, 32, 32).expect("a legal frame");
             let mut raster = Raster::new(frame).with_clip(clip);
             let clip = raster.clip();
-            let all = kernels().into_iter().map(|kernel| cull(kernel.simd_level(), &places, &triangles, clip, culls));
+            let all = kernels().into_iter().map(|kernel| cull(kernel.simd_level(), &positions, &triangles, clip, culls));
             let all: Vec<CullMasks> = all.collect();
             for masks in &all {
                 prop_assert_eq!(*masks, all[0]);
@@ -407,15 +407,16 @@ mod tests {
             for (i, triangle) in triangles.iter().enumerate() {
                 let is = |bits: u64| bits >> i & 1 == 1;
                 let CullMasks { clipped, too_near, front, back, covers, .. } = all[0];
-                let corners = triangle.map(|i| places[i as usize]);
+                let corners = triangle.map(|i| positions[i as usize]);
                 prop_assert_eq!(is(too_near), corners == [ScreenPos::TOO_NEAR; 3]);
                 prop_assert_eq!(is(clipped), !is(too_near) && corners.iter().any(|corner| corner.needs_clipping()));
                 if is(clipped) || is(too_near) {
                     prop_assert!(!is(front) && !is(back) && !is(covers));
                     continue;
                 }
-                let vertices = corners.map(|place| {
-                    Vertex::new(I24F8::from_bits(place.x()), I24F8::from_bits(place.y()), U8F8::default(), 1).expect("legal")
+                let vertices = corners.map(|position| {
+                    let (x, y) = (I24F8::from_bits(position.x()), I24F8::from_bits(position.y()));
+                    Vertex::new(x, y, U8F8::default(), 1).expect("legal")
                 });
                 let area = doubled_area(&vertices);
                 prop_assert_eq!((is(front), is(back)), (area < 0, area > 0));

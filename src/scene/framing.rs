@@ -48,12 +48,12 @@ pub enum Turning {
 
 /// The space that an object covers as it moves.
 pub struct Swept {
-    path: Places,
+    path: Pivots,
     shape: Shape,
 }
 
 /// The positions of the pivot.
-enum Places {
+enum Pivots {
     /// One point, or anywhere between two or more.
     Points(Vec<Row>),
     /// A circle: its centre, and two radius vectors.
@@ -86,10 +86,10 @@ impl Swept {
             }
         };
         let path = match path {
-            None => Places::Points(vec![widen(object.position)]),
-            Some(Path::Line { from, to, .. }) => Places::Points(vec![widen(*from), widen(*to)]),
+            None => Pivots::Points(vec![widen(object.position)]),
+            Some(Path::Line { from, to, .. }) => Pivots::Points(vec![widen(*from), widen(*to)]),
             Some(Path::Circle { centre, from, towards, .. }) => {
-                Places::Round(widen(*centre), [widen(*from), widen(*towards)])
+                Pivots::Round(widen(*centre), [widen(*from), widen(*towards)])
             }
         };
         Self { path, shape }
@@ -113,16 +113,16 @@ impl Swept {
             }
             Shape::Sphere(radius) => directions.map(|n| n.map(|c| c * radius / libm::sqrt(dot(n, n)))),
         };
-        let places: [Row; N] = match &self.path {
-            Places::Points(points) => best(points, |point, i| dot(*point, directions[i])),
-            Places::Round(centre, radii) => directions.map(|n| {
+        let pivots: [Row; N] = match &self.path {
+            Pivots::Points(points) => best(points, |point, i| dot(*point, directions[i])),
+            Pivots::Round(centre, radii) => directions.map(|n| {
                 let [a, b] = radii.map(|radius| dot(radius, n));
                 let length = libm::sqrt(a * a + b * b);
                 let part = |c: f64| if length > 0.0 { c / length } else { 0.0 };
                 added(added(*centre, radii[0], part(a)), radii[1], part(b))
             }),
         };
-        core::array::from_fn(|i| added(offsets[i], places[i], 1.0))
+        core::array::from_fn(|i| added(offsets[i], pivots[i], 1.0))
     }
 }
 
@@ -166,8 +166,8 @@ impl Viewpoint {
                 [x, y, (front + back) / 2.0]
             }
         };
-        let place = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
-        let target = self.target.map_or(place(z), widen);
+        let point = |depth: f64| [0, 1, 2].map(|i| right[i] * x + up[i] * y + towards[i] * depth);
+        let target = self.target.map_or(point(z), widen);
         // Far enough away that the eye differs from the target in f32.
         let least =
             target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
@@ -249,8 +249,8 @@ fn points(object: &Object, angles: [Angle; 3]) -> Vec<Row> {
     let scale = f64::from(object.scale);
     let turn = object.turned_by(angles).map(|row| row.map(|c| c * scale));
     let pivot = widen(object.pivot);
-    let places = mesh.positions().iter().zip(used).filter(|(_, used)| *used);
-    places.map(|(p, _)| turn.map(|row| dot(row, added(widen(*p), pivot, -1.0)))).collect()
+    let positions = mesh.positions().iter().zip(used).filter(|(_, used)| *used);
+    positions.map(|(p, _)| turn.map(|row| dot(row, added(widen(*p), pivot, -1.0)))).collect()
 }
 
 /// The unit vectors right, up and backwards for a view in the unit direction `forward`. Returns `None` only if
@@ -404,8 +404,9 @@ mod tests {
 
     /// A mesh of `corners` random vertices in a box around `middle`.
     fn mesh(random: &mut Random, corners: u32, sizes: [f64; 3], middle: [f64; 3]) -> Mesh {
-        let place = |i: usize, random: &mut Random| (middle[i] + random.around_zero(sizes[i])) as f32;
-        let positions = (0..corners).map(|_| Vec3::from_array(core::array::from_fn(|i| place(i, random)))).collect();
+        let coordinate = |i: usize, random: &mut Random| (middle[i] + random.around_zero(sizes[i])) as f32;
+        let positions =
+            (0..corners).map(|_| Vec3::from_array(core::array::from_fn(|i| coordinate(i, random)))).collect();
         Mesh::new(positions, (2..corners).map(|i| [0, i - 1, i]).collect()).expect("a mesh")
     }
 

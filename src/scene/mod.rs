@@ -322,8 +322,8 @@ impl Scene {
                             }
                         }
                         Moving::Light(light) => match self.light_mut(light) {
-                            Some(Light::Sun { direction: place, .. } | Light::Lamp { position: place, .. }) => {
-                                *place = at
+                            Some(Light::Sun { direction: vector, .. } | Light::Lamp { position: vector, .. }) => {
+                                *vector = at
                             }
                             None => {}
                         },

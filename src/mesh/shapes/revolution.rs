@@ -78,8 +78,8 @@ pub fn torus(u: u32, v: u32) -> Mesh {
         for j in 0..v {
             let (cos_v, sin_v) = turn(f64::from(j), v);
             let radius = RING + TUBE * cos_v;
-            let place = [radius * cos_u, radius * sin_u, TUBE * sin_v];
-            positions.push(Vec3::from_array(place.map(toward_zero)));
+            let position = [radius * cos_u, radius * sin_u, TUBE * sin_v];
+            positions.push(Vec3::from_array(position.map(toward_zero)));
             normals.push(narrow([cos_v * cos_u, cos_v * sin_u, sin_v]));
         }
     }
@@ -116,8 +116,8 @@ pub fn cone(slices: u32, stacks: u32) -> Mesh {
         for slice in 0..slices {
             let direction = turn(f64::from(slice), slices);
             let base = |x: f64| libm::trunc(radius * x * 32_768.0) / 32_768.0;
-            let place = [base(direction.0) * part, 1.0 - 1.5 * part, -base(direction.1) * part];
-            positions.push(narrow(place));
+            let position = [base(direction.0) * part, 1.0 - 1.5 * part, -base(direction.1) * part];
+            positions.push(narrow(position));
             normals.push(side_normal(direction));
         }
     }

@@ -13,14 +13,15 @@ use crate::mesh::Mesh;
 pub fn wall(columns: u32, rows: u32) -> Mesh {
     let (columns, rows) = (columns.clamp(1, MAX_PARTS), rows.clamp(1, MAX_PARTS));
     let half = libm::sqrt(0.5);
-    let place = |i: u32, of: u32| toward_zero(half * (2.0 * f64::from(i) / f64::from(of) - 1.0));
+    let coordinate = |i: u32, of: u32| toward_zero(half * (2.0 * f64::from(i) / f64::from(of) - 1.0));
     // Both at most 4,096: exact.
     let part = |i: u32, of: u32| i as f32 / of as f32;
     let mut positions = Vec::new();
     let mut texcoords = Vec::new();
     for row in 0..=rows {
         texcoords.extend((0..=columns).map(|column| Vec2::new(part(column, columns), part(row, rows))));
-        positions.extend((0..=columns).map(|column| Vec3::new(place(column, columns), place(row, rows), 0.0)));
+        positions
+            .extend((0..=columns).map(|column| Vec3::new(coordinate(column, columns), coordinate(row, rows), 0.0)));
     }
     let mut triangles = Vec::new();
     for row in 0..rows {

@@ -230,8 +230,8 @@ mod tests {
         #[test]
         fn faces_are_drawn_like_triangles(corners in prop::array::uniform3((0_i32..40, 0_i32..40))) {
             let at = |(x, y): (i32, i32)| {
-                let place = |c: i32| I24F8::from_bits(c * 32);
-                Vertex::new(place(x), place(y), U8F8::from(9), 1).expect("inside the guard band")
+                let coordinate = |c: i32| I24F8::from_bits(c * 32);
+                Vertex::new(coordinate(x), coordinate(y), U8F8::from(9), 1).expect("inside the guard band")
             };
             let vertices = corners.map(at);
             let mut batch = EffectBatch::new();

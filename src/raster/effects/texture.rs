@@ -412,11 +412,11 @@ compiled_for_each_level! {
         image: LevelTexels<'_>,
         range: (usize, usize),
         offsets: &mut StoredOffsets,
-    ) = places_in_doubles_by, up to AVX2;
+    ) = offsets_in_doubles_by, up to AVX2;
 }
 
 #[inline(always)]
-fn places_in_doubles_by<S: Lanes8>(
+fn offsets_in_doubles_by<S: Lanes8>(
     s: S,
     (spans, i): (&Spans<'_>, usize),
     image: LevelTexels<'_>,
@@ -521,8 +521,8 @@ mod tests {
         #[test]
         fn affine_coordinates_are_the_definition(
             (corners, (left, top)) in prop::sample::select(&[300, 5_000, 80_000, 1 << 20][..]).prop_flat_map(|side| {
-                let place = (-side / 2..80_000, -side / 2..50_000);
-                ([corner(side), corner(side), corner(side)], place)
+                let pixel = (-side / 2..80_000, -side / 2..50_000);
+                ([corner(side), corner(side), corner(side)], pixel)
             }),
             (bits, coordinates) in (0_u32..32, any::<[i32; 3]>()),
             level in 0_u32..9,
@@ -753,9 +753,9 @@ mod tests {
     fn levels_of_a_walked_face_are_the_definition() {
         let (decided, all) = (core::cell::Cell::new(0), core::cell::Cell::new(0));
         let mut runner = proptest::test_runner::TestRunner::new(ProptestConfig::with_cases(4_000));
-        let place = || prop_oneof![3 => -(1 << 20)..=1 << 20, 1 => -20_000..100_000_i32];
+        let coordinate = || prop_oneof![3 => -(1 << 20)..=1 << 20, 1 => -20_000..100_000_i32];
         let depth = prop_oneof![8 => 17.0..30.0_f64, 1 => 0.0..32.0_f64].prop_map(|bits| bits.exp2() as u32);
-        let corner = (place(), place(), depth);
+        let corner = (coordinate(), coordinate(), depth);
         let coordinate = (0_u32..32, any::<i32>()).prop_map(|(bits, n)| n >> bits);
         // Some are slivers, whose weights change fast.
         let sliver = prop::option::of((0.0..1.0_f64, -40..40_i32));
@@ -1020,11 +1020,11 @@ mod tests {
         step: [u32; 2],
         is_row: bool,
         start: [u32; 2],
-        place: (i32, i32),
+        pixel: (i32, i32),
     ) -> Result<(), TestCaseError> {
         for i in 0..2 {
             let values = texture.map(|corner| corner[i]);
-            prop_assert_eq!(start[i], defined(triangle, values, 0, place));
+            prop_assert_eq!(start[i], defined(triangle, values, 0, pixel));
             if is_row {
                 let (gx, _) = triangle.gradient(values.map(i64::from));
                 prop_assert_eq!(step[i], (256 * i128::from(gx) / i128::from(triangle.area())) as u32);

@@ -206,8 +206,8 @@ mod tests {
     fn corners_are_in_order_and_known() {
         const ENDS: [i32; 3] = [-Vertex::GUARD_BAND, 0, Vertex::GUARD_BAND];
         // The shade distinguishes equal points.
-        let vertex = |place: usize, shade: u16| {
-            let [x, y] = [ENDS[place % 3], ENDS[place / 3]].map(I24F8::from_bits);
+        let vertex = |index: usize, shade: u16| {
+            let [x, y] = [ENDS[index % 3], ENDS[index / 3]].map(I24F8::from_bits);
             Vertex::new(x, y, U8F8::from_bits(shade), 0).expect("in the guard band")
         };
         for triple in 0..9 * 9 * 9 {

@@ -87,8 +87,8 @@ impl<'a> List<'a> {
 
     /// The key at this index of the list.
     #[inline]
-    pub(super) fn key(&self, place: usize) -> Option<Key> {
-        self.keys[..self.active].get(place).map(|key| Key(*key))
+    pub(super) fn key(&self, index: usize) -> Option<Key> {
+        self.keys[..self.active].get(index).map(|key| Key(*key))
     }
 
     #[inline]
@@ -146,12 +146,12 @@ impl<'a> List<'a> {
             }
             pair.row = pair.walk.row(self.frame_width, self.clip);
             let key = Key::new(pair.row.x0, slot).0;
-            let mut place = kept;
-            while place > 0 && self.keys[place - 1] > key {
-                self.keys[place] = self.keys[place - 1];
-                place -= 1;
+            let mut index = kept;
+            while index > 0 && self.keys[index - 1] > key {
+                self.keys[index] = self.keys[index - 1];
+                index -= 1;
             }
-            self.keys[place] = key;
+            self.keys[index] = key;
             kept += 1;
         }
         self.active = kept;

@@ -78,14 +78,14 @@ struct Key(u64);
 impl Key {
     const NUMBER_BITS: u32 = 48;
 
-    /// `place` is a row or column of a frame or the one after its last. No slice has 2⁴⁸ faces.
+    /// `position` is a row or column of a frame or the one after its last. No slice has 2⁴⁸ faces.
     #[inline]
-    fn new(place: i32, number: usize) -> Self {
-        Self((place as u64) << Self::NUMBER_BITS | number as u64)
+    fn new(position: i32, number: usize) -> Self {
+        Self((position as u64) << Self::NUMBER_BITS | number as u64)
     }
 
     #[inline]
-    fn place(self) -> i32 {
+    fn position(self) -> i32 {
         (self.0 >> Self::NUMBER_BITS) as i32
     }
 
@@ -149,8 +149,8 @@ impl<D: Cell> Raster<'_, D> {
         let mut sweep = Sweep { drawn: DrawStats::default(), run: None };
         let mut list = active::List::new(active, pairs, self.clip, self.frame.width());
         let mut next = 0;
-        while let Some(y) = list.row().or_else(|| coming.get(next).map(|key| Key(*key).place())) {
-            let enter = coming[next..].iter().take_while(|key| Key(**key).place() == y).count();
+        while let Some(y) = list.row().or_else(|| coming.get(next).map(|key| Key(*key).position())) {
+            let enter = coming[next..].iter().take_while(|key| Key(**key).position() == y).count();
             list.enter(y, &mut coming[next..next + enter], faces);
             next += enter;
             sweep.row(self, &mut list, open, y, &mut paint);
@@ -194,9 +194,9 @@ impl Sweep {
             if opened == 0 {
                 // Skip to where a face begins.
                 let Some(key) = list.key(next) else { break };
-                x = key.place();
+                x = key.position();
             }
-            while let Some(key) = list.key(next).filter(|key| key.place() <= x) {
+            while let Some(key) = list.key(next).filter(|key| key.position() <= x) {
                 let pair = list.pair(key.number());
                 if pair.row.x0 < pair.row.x1 {
                     self.drawn.covered += (pair.row.x1 - pair.row.x0) as u32;
@@ -205,7 +205,7 @@ impl Sweep {
                 }
                 next += 1;
             }
-            let mut end = list.key(next).map_or(i32::MAX, Key::place);
+            let mut end = list.key(next).map_or(i32::MAX, Key::position);
             for slot in &open[..opened] {
                 end = end.min(list.pair(*slot as usize).row.x1);
             }

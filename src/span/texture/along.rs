@@ -293,7 +293,7 @@ impl<S: Lanes8> OffsetsAlong<S> for AffineAlong<S> {
 /// Offsets of the texels of up to 64 pixels, eight at a time.
 pub(crate) type StoredOffsets = [[i32; LANES]; 8];
 
-/// Indices that a function computes all at once when the first of them are requested.
+/// Offsets that a function computes all at once when the first of them are requested.
 pub(crate) struct StoredAlong<S, F> {
     s: S,
     fill: F,
