@@ -660,6 +660,51 @@ fn texels_at_their_borders_are_the_oracles() {
     assert!(pixels > 50_000, "{pixels} pixels were compared");
 }
 
+/// A clip rectangle of at most eight columns leaves rows of a few pixels, which are drawn two at a time and begin after
+/// skipped ones: no byte inside it changes. Textures of both mappings, lit or not, in all columns, with every kernel.
+#[test]
+fn narrow_clip_rectangles_change_no_byte_inside() {
+    let mut tried = Tried::new("narrow_clip_rectangles_change_no_byte_inside", 200);
+    let mut random = Random::named("narrow");
+    let stock = Stock::new(&mut random);
+    let mut pixels = 0;
+    while tried.more() {
+        let vertices = triangles::triangle(&mut random, WIDTH.into(), HEIGHT.into());
+        let distances = [0; 3].map(|_| random.within(1 << 20, 1 << 24) as u32);
+        let vertices = [0, 1, 2].map(|k| {
+            let v = &vertices[k];
+            Vertex::new(v.x(), v.y(), v.shade(), distances[k]).expect("the same place")
+        });
+        let attributes = attributes(&mut random);
+        let look = PixelPipeline {
+            source: ShadeSource::Shaded(random.one_of(&[Interpolation::GouraudReseeded, Interpolation::Flat(77)])),
+            texture: Some(texture(
+                &stock.texels,
+                None,
+                (8, 8),
+                random.one_of(&[Mapping::Perspective, Mapping::Affine]),
+                [&stock.tables[0]; 3],
+            )),
+            ..PixelPipeline::PLAIN
+        };
+        for kernel in Kernel::available() {
+            let bytes = draw(SIZE, &vertices, &attributes, &look, None, kernel);
+            let mut left = 0;
+            while left < WIDTH as u32 {
+                let right = (left + random.within(1, 8) as u32).min(WIDTH as u32);
+                let clip = Rect { x0: left, x1: right, ..SIZE.rect() };
+                let clipped = draw(SIZE, &vertices, &attributes, &look, Some(clip), kernel);
+                let mut inside = bytes.clone();
+                triangles::clip_to(&mut inside, WIDTH as u32, clip, BEFORE);
+                assert_eq!(clipped, inside, "{kernel} in {clip:?}: {vertices:?}, {attributes:?}, {look:?}");
+                pixels += clipped.iter().filter(|byte| **byte != BEFORE).count();
+                left = right;
+            }
+        }
+    }
+    assert!(pixels > 100_000, "{pixels} pixels were compared");
+}
+
 /// A face without any effect has exactly the bytes of a plain triangle: whatever interpolates its shades, and its
 /// channels one by one; whole or within a clip rectangle; with every kernel.
 #[test]
