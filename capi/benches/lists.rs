@@ -130,7 +130,7 @@ fn main() {
 
 fn draw(pixels: &mut [u8], depths: &mut [u32], has_depth: bool, triangles: &[[Vertex; 3]]) {
     let frame = Frame::new(pixels, 320, 200, 320).expect("a frame");
-    let list = triangles.iter().map(|corners| (corners, Interpolation::GouraudReseeded));
+    let list = triangles.iter().map(|corners| (corners, Interpolation::Gouraud88Reseeded));
     if has_depth {
         let depth = DepthBuffer::new(depths, &frame).expect("depths");
         black_box(Raster::new(frame).with_depth(depth).triangles(list));

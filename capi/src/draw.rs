@@ -40,8 +40,8 @@ const FEW_REMEMBERED: usize = 16;
 fn interpolation(material: &Material) -> Outcome<Interpolation> {
     Ok(match material.shading {
         0 => Interpolation::Flat(u8::try_from(material.color).map_err(|_| Refusal::Value)?),
-        1 => Interpolation::GouraudReseeded,
-        2 => Interpolation::Gouraud,
+        1 => Interpolation::Gouraud88Reseeded,
+        2 => Interpolation::Gouraud88,
         3 => Interpolation::Gouraud1616,
         4 => Interpolation::GouraudHyperbolic,
         _ => return Err(Refusal::Value),

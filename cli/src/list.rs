@@ -115,7 +115,7 @@ fn summary(shading: Shading) -> &'static str {
         Shading::GouraudTessellated => "faces split until linear shading fits the light",
         Shading::PhongTable => "the normal's x and y interpolated; light from a table",
         Shading::Phong => "the normal interpolated, the whole lighting model at every pixel",
-        Shading::Float => "perspective-correct in f32, by a division at every pixel",
+        Shading::GouraudFloat => "perspective-correct in f32, by a division at every pixel",
         _ => "",
     }
 }

@@ -112,9 +112,9 @@ pub struct Pixel {
     pub byte: u8,
 }
 
-/// Returns whether this is `Interpolation::Float`, which exists only with `alloc`.
+/// Returns whether this is `Interpolation::GouraudFloat`, which exists only with `alloc`.
 fn is_float(interpolation: Interpolation) -> bool {
-    interpolation.name() == "float"
+    interpolation.name() == "gouraud-float"
 }
 
 /// How far a shading's byte may be from the exact shade in a frame of `width` columns, in 1/256 shade, as n / d; `None`
@@ -122,8 +122,8 @@ fn is_float(interpolation: Interpolation) -> bool {
 pub fn bound(interpolation: Interpolation, width: i128) -> Option<(i128, i128)> {
     match interpolation {
         // A half from rounding to a byte, and less than 1/256 for the start and for each step.
-        Interpolation::Gouraud => Some((128 + width, 1)),
-        Interpolation::GouraudReseeded => Some((128 + 64, 1)),
+        Interpolation::Gouraud88 => Some((128 + width, 1)),
+        Interpolation::Gouraud88Reseeded => Some((128 + 64, 1)),
         // The same, with 1/65,536.
         Interpolation::Gouraud1616 => Some((128 * 256 + width, 256)),
         Interpolation::GouraudHyperbolic => Some((128, 1)),
@@ -214,7 +214,7 @@ impl Shades {
                 // In 1/256 shade or in 1/65,536.
                 let finer = if self.interpolation == Interpolation::Gouraud1616 { 256 } else { 1 };
                 let seed = match self.interpolation {
-                    Interpolation::GouraudReseeded => first + (x - first) / 64 * 64,
+                    Interpolation::Gouraud88Reseeded => first + (x - first) / 64 * 64,
                     _ => first,
                 };
                 let finer_of = |exact: Ratio| Ratio { n: exact.n * finer, d: exact.d };

@@ -31,7 +31,7 @@ impl FaceShading {
         Self::By(Shading::GouraudHyperbolic),
         Self::By(Shading::GouraudTessellated),
         Self::By(Shading::PhongTable),
-        Self::By(Shading::Float),
+        Self::By(Shading::GouraudFloat),
         Self::Quadratic,
         Self::PhongEvery(SampleSpacing::Sixteen),
         Self::PhongEvery(SampleSpacing::Eight),

@@ -55,7 +55,7 @@ impl fmt::Display for FaceCounts {
 fn why(shading: FaceShading) -> &'static str {
     match shading {
         FaceShading::By(Shading::Flat) => "one shade at their corners, or near enough",
-        FaceShading::By(Shading::Float) => "light is linear enough in space, but not on the screen",
+        FaceShading::By(Shading::GouraudFloat) => "light is linear enough in space, but not on the screen",
         FaceShading::By(Shading::Phong) => "light is not known to be linear enough",
         FaceShading::By(_) => "light is linear enough on them",
         FaceShading::Quadratic => "light is quadratic on the screen",

@@ -4,14 +4,16 @@ use crate::fixed::IS_SMALL;
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// | interpolation | [`Shading`](crate::settings::Shading) | differs from exact, in shades, by less than |
-/// |---|---|---|
-/// | `GouraudVintage` | `GouraudVintage` | – (it starts from other vertices) |
-/// | `Gouraud` | `Gouraud88` | ½ + w/256 over a row of w pixels: 1.75 over 320 |
-/// | `GouraudReseeded`, the default | `Gouraud88Reseeded` | ½ + ¼ |
-/// | `Gouraud1616` | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 |
-/// | `GouraudHyperbolic` | `GouraudHyperbolic` | ½, or exactly that |
-/// | `Float` | `Float` | ½ + 1/8,192 |
+/// Those between the vertices have the names of the [`Shading`](crate::settings::Shading) that they draw:
+///
+/// | interpolation | differs from exact, in shades, by less than |
+/// |---|---|
+/// | `GouraudVintage` | – (it starts from other vertices) |
+/// | `Gouraud88` | ½ + w/256 over a row of w pixels: 1.75 over 320 |
+/// | `Gouraud88Reseeded`, the default | ½ + ¼ |
+/// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 |
+/// | `GouraudHyperbolic` | ½, or exactly that |
+/// | `GouraudFloat` | ½ + 1/8,192 |
 ///
 /// The exact shade is linear on the screen, and for the last two linear on the face.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -25,15 +27,12 @@ pub enum Interpolation {
     GouraudVintage,
     /// Linear between the vertices, each row of the triangle one span: the start is exact, with one addition per pixel
     /// from there on.
-    ///
-    /// This is [`Shading::Gouraud88`](crate::settings::Shading::Gouraud88), not the default, which is
-    /// [`GouraudReseeded`](Self::GouraudReseeded). In files and on the command line `gouraud` means the default.
-    Gouraud,
+    Gouraud88,
     /// Linear between the vertices, each row of the triangle reseeded every 64 pixels.
     ///
     /// Each start is exact, with one addition per pixel from there on.
     #[default]
-    GouraudReseeded,
+    Gouraud88Reseeded,
     /// Linear between the vertices in 16.16, each row of the triangle one span.
     Gouraud1616,
     /// Linear on the face in space, so perspective-correct: one quotient per pixel, the shade nearest to exact. It uses
@@ -44,19 +43,19 @@ pub enum Interpolation {
     /// It exists only with an allocator, so that the raster of a microcontroller without floating point links no
     /// routine for it.
     #[cfg(feature = "alloc")]
-    Float,
+    GouraudFloat,
 }
 
 impl Interpolation {
     /// All interpolations between the vertices.
     pub const INTERPOLATED: &[Self] = &[
         Self::GouraudVintage,
-        Self::Gouraud,
-        Self::GouraudReseeded,
+        Self::Gouraud88,
+        Self::Gouraud88Reseeded,
         Self::Gouraud1616,
         Self::GouraudHyperbolic,
         #[cfg(feature = "alloc")]
-        Self::Float,
+        Self::GouraudFloat,
     ];
 
     /// The name, for messages.
@@ -65,12 +64,12 @@ impl Interpolation {
         match self {
             Self::Flat(_) => "flat",
             Self::GouraudVintage => "gouraud-vintage",
-            Self::Gouraud => "gouraud",
-            Self::GouraudReseeded => "gouraud-reseeded",
+            Self::Gouraud88 => "gouraud-8.8",
+            Self::Gouraud88Reseeded => "gouraud-8.8-reseeded",
             Self::Gouraud1616 => "gouraud-16.16",
             Self::GouraudHyperbolic => "gouraud-hyperbolic",
             #[cfg(feature = "alloc")]
-            Self::Float => "float",
+            Self::GouraudFloat => "gouraud-float",
         }
     }
 
@@ -88,7 +87,7 @@ impl Interpolation {
         match self {
             Self::GouraudHyperbolic => true,
             #[cfg(feature = "alloc")]
-            Self::Float => true,
+            Self::GouraudFloat => true,
             _ => false,
         }
     }

@@ -59,9 +59,9 @@ impl RowShader {
     pub(super) fn of_values(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation) -> Self {
         match interpolation {
             Interpolation::Flat(index) => Self::Flat(index),
-            Interpolation::Gouraud | Interpolation::GouraudReseeded => Self::Linear {
+            Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => Self::Linear {
                 plane: ShadePlane::of_values(triangle, values),
-                reseeded: matches!(interpolation, Interpolation::GouraudReseeded),
+                reseeded: matches!(interpolation, Interpolation::Gouraud88Reseeded),
             },
             _ => Self::of_another_kind(triangle, values, interpolation),
         }
@@ -76,15 +76,15 @@ impl RowShader {
             Interpolation::Gouraud1616 => Self::Fixed16(ShadePlane16::of_values(triangle, values)),
             Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
-            Interpolation::Float if !IS_SMALL => Self::Float(FloatPlane::of_values(triangle, values)),
+            Interpolation::GouraudFloat if !IS_SMALL => Self::Float(FloatPlane::of_values(triangle, values)),
             // Handled above.
-            Interpolation::Flat(_) | Interpolation::Gouraud | Interpolation::GouraudReseeded => {
+            Interpolation::Flat(_) | Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
                 Self::of_values(triangle, values, interpolation)
             }
             // Only in a build for size.
-            Interpolation::GouraudVintage => Self::of_values(triangle, values, Interpolation::Gouraud),
+            Interpolation::GouraudVintage => Self::of_values(triangle, values, Interpolation::Gouraud88),
             #[cfg(feature = "alloc")]
-            Interpolation::Float => Self::of_values(triangle, values, Interpolation::Gouraud),
+            Interpolation::GouraudFloat => Self::of_values(triangle, values, Interpolation::Gouraud88),
         }
     }
 

@@ -111,8 +111,8 @@ impl ShadeTrace {
         let linear = Ratio { numerator: plane.numerator(x, y).into(), denominator: i128::from(plane.area().get()) };
         match interpolation {
             Interpolation::Flat(byte) => Self { way: Progression::Flat(byte), exact: None, byte },
-            Interpolation::Gouraud | Interpolation::GouraudReseeded => {
-                let reseed = if interpolation == Interpolation::Gouraud { i32::MAX } else { RESEED };
+            Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
+                let reseed = if interpolation == Interpolation::Gouraud88 { i32::MAX } else { RESEED };
                 let start_at = row.origin + (x - row.origin) / reseed * reseed;
                 let sums = Accumulator {
                     first: row.origin,
@@ -155,7 +155,7 @@ impl ShadeTrace {
                 let byte = numerator.div_euclid(denominator) as u8;
                 Self { way: Progression::Quotient, exact: Some(on_face(&plane, x, y)), byte }
             }
-            Interpolation::Float => {
+            Interpolation::GouraudFloat => {
                 let exact = on_face(&HyperbolicPlane::of_values(triangle, values), x, y);
                 let float = FloatPlane::of_values(triangle, values).row(row);
                 let mut byte = [0];
@@ -220,7 +220,7 @@ mod tests {
     fn a_rising_row_by_hand() {
         // 50.0 and a half: 0x3280; 20.0 = 0x1400 a pixel; after three 110.5 = 0x6e80.
         let ShadeTrace { way: Progression::Accumulator(sums), exact, byte } =
-            shade_trace(Interpolation::GouraudReseeded, [40, 200, 40], 3)
+            shade_trace(Interpolation::Gouraud88Reseeded, [40, 200, 40], 3)
         else {
             panic!("sums")
         };
@@ -244,7 +244,7 @@ mod tests {
         };
         assert_eq!((vintage.start, vintage.step, vintage.sum(), byte), (0x2800, 0x1400, 0x6400, 100));
         // Depths are equal, so the perspective changes nothing.
-        for interpolation in [Interpolation::GouraudHyperbolic, Interpolation::Float] {
+        for interpolation in [Interpolation::GouraudHyperbolic, Interpolation::GouraudFloat] {
             assert_eq!(shade_trace(interpolation, [40, 200, 40], 3).byte, 110);
         }
         assert_eq!(
@@ -258,14 +258,14 @@ mod tests {
         // From 1 to 0 over 8 pixels: −32/256 a pixel, exact in 8.8; at the first centre 1 − 1/16 = 240/256. With half a
         // shade 0x0170; after five 0x00d0.
         let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
-            shade_trace(Interpolation::Gouraud, [1, 0, 1], 5)
+            shade_trace(Interpolation::Gouraud88, [1, 0, 1], 5)
         else {
             panic!("sums")
         };
         assert_eq!((sums.start, sums.step, sums.sum(), byte), (0x0170, -0x20, 0x00D0, 0));
         // 10 to 9 from top to bottom makes the first row's shade 10 − 1/8 everywhere: no step.
         let ShadeTrace { way: Progression::Accumulator(sums), byte, .. } =
-            shade_trace(Interpolation::Gouraud, [10, 10, 9], 5)
+            shade_trace(Interpolation::Gouraud88, [10, 10, 9], 5)
         else {
             panic!("sums")
         };

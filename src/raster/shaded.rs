@@ -64,7 +64,7 @@ impl Kind {
             Interpolation::Gouraud1616 => Some(Self::Fixed16),
             Interpolation::GouraudHyperbolic => Some(Self::Hyperbolic),
             #[cfg(feature = "alloc")]
-            Interpolation::Float => Some(Self::Float),
+            Interpolation::GouraudFloat => Some(Self::Float),
             _ => None,
         }
     }

@@ -90,8 +90,8 @@ impl<D: Cell> Raster<'_, D> {
         let are_flat = !picks.flat.is_empty();
         let kind = Kind::of(interpolation).filter(|_| !are_flat);
         let in_pieces = match interpolation {
-            Interpolation::GouraudReseeded if HAS_F64 && fits => !are_flat,
-            Interpolation::Gouraud | Interpolation::Flat(_) if HAS_F64 && fits => false,
+            Interpolation::Gouraud88Reseeded if HAS_F64 && fits => !are_flat,
+            Interpolation::Gouraud88 | Interpolation::Flat(_) if HAS_F64 && fits => false,
             _ if HAS_F64 && fits && kind.is_some() => true,
             _ => {
                 for k in 0..picks.picks.len() {
@@ -427,10 +427,10 @@ mod tests {
                     let picks = Picks { picks: list.as_slice(), flat: &flat };
                     let mut drawn = DrawStats::default();
                     if are_together {
-                        drawn = raster.picks(&all, picks, Interpolation::Gouraud, &mut SpanScratch::default(), None);
+                        drawn = raster.picks(&all, picks, Interpolation::Gouraud88, &mut SpanScratch::default(), None);
                     } else {
                         for k in 0..flat.len() {
-                            drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud);
+                            drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud88);
                         }
                     }
                     (drawn, bytes, cells)

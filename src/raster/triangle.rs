@@ -82,7 +82,9 @@ const TALL: i64 = 32 << 8;
 fn simplest(vertices: &[Vertex; 3], interpolation: Interpolation) -> Interpolation {
     let [a, b, c] = vertices.each_ref().map(|vertex| vertex.x().to_bits());
     match interpolation {
-        Interpolation::GouraudReseeded if a.max(b).max(c) - a.min(b).min(c) <= RESEED << 8 => Interpolation::Gouraud,
+        Interpolation::Gouraud88Reseeded if a.max(b).max(c) - a.min(b).min(c) <= RESEED << 8 => {
+            Interpolation::Gouraud88
+        }
         interpolation => interpolation,
     }
 }
@@ -136,7 +138,7 @@ impl<'a, D: Cell> Raster<'a, D> {
         if !IS_COMPACT && self.depth.is_none() {
             let mut plane = None;
             match interpolation {
-                Interpolation::Gouraud => {
+                Interpolation::Gouraud88 => {
                     return self.fill_rows(&triangle, |row| {
                         let plane = plane.get_or_insert_with(|| ShadePlane::new(&triangle));
                         (linear_start(row, plane), plane.step())

@@ -77,8 +77,8 @@ impl<'t, const N: usize> Pending<'t, N> {
     fn new() -> Self {
         const NOWHERE: [Vertex; 3] = [Vertex::ORIGIN; 3];
         Self {
-            drawn_by: Interpolation::Gouraud,
-            triangles: [(&NOWHERE, Interpolation::Gouraud); N],
+            drawn_by: Interpolation::Gouraud88,
+            triangles: [(&NOWHERE, Interpolation::Gouraud88); N],
             all: [[ScreenPos::new(0, 0); N]; 3],
             at: [[ScreenPos::new(0, 0); N]; 3],
             depth: [[0; N]; 3],
@@ -198,7 +198,7 @@ fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
 /// The interpolation by which a triangle is drawn: a flat triangle is drawn like one whose rows are not reseeded.
 fn drawn_by(interpolation: Interpolation) -> Interpolation {
     match interpolation {
-        Interpolation::Flat(_) => Interpolation::Gouraud,
+        Interpolation::Flat(_) => Interpolation::Gouraud88,
         interpolation => interpolation,
     }
 }
@@ -443,7 +443,7 @@ mod tests {
         for a in &points {
             for b in &points {
                 for corners in points.iter().map(|c| [*a, *b, *c]).filter(misses_centres) {
-                    assert_eq!(raster.triangle_by_rows(&corners, Interpolation::Gouraud).pixels, 0, "{corners:?}");
+                    assert_eq!(raster.triangle_by_rows(&corners, Interpolation::Gouraud88).pixels, 0, "{corners:?}");
                     left_out += 1;
                 }
             }

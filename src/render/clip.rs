@@ -184,7 +184,7 @@ mod tests {
                 return Ok(());
             }
             off.set(off.get() + 1);
-            let progressions = Progressions { interpolation: Interpolation::Gouraud, affine: false };
+            let progressions = Progressions { interpolation: Interpolation::Gouraud88, affine: false };
             let corner = |at| Corner { at, shade: 0.0, vertex: None, attributes: Attributes::default() };
             if let Some((polygon, _)) = clip(&view, progressions, at.map(corner)) {
                 left.set(left.get() + 1);

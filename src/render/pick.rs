@@ -51,7 +51,7 @@ impl Look {
     /// The interpolation of the corners' shades.
     pub(super) fn interpolation(&self) -> Interpolation {
         // If the corners have the same shade, any interpolation will do.
-        if self.one_shade { Interpolation::Gouraud } else { self.shading.interpolation() }
+        if self.one_shade { Interpolation::Gouraud88 } else { self.shading.interpolation() }
     }
 }
 

@@ -31,7 +31,7 @@ named! {
         Phong = "phong",
         /// Shades in f32, divided by w at the vertices and multiplied by it again at every pixel: what a program would
         /// do today.
-        Float = "gouraud-float",
+        GouraudFloat = "gouraud-float",
     }
 }
 
@@ -47,15 +47,15 @@ impl Shading {
     pub const fn interpolation(self) -> Interpolation {
         match self {
             Self::GouraudVintage => Interpolation::GouraudVintage,
-            Self::Gouraud88 => Interpolation::Gouraud,
+            Self::Gouraud88 => Interpolation::Gouraud88,
             Self::Gouraud1616 => Interpolation::Gouraud1616,
             Self::GouraudHyperbolic => Interpolation::GouraudHyperbolic,
             #[cfg(feature = "alloc")]
-            Self::Float => Interpolation::Float,
+            Self::GouraudFloat => Interpolation::GouraudFloat,
             #[cfg(not(feature = "alloc"))]
-            Self::Float => Interpolation::GouraudReseeded,
+            Self::GouraudFloat => Interpolation::Gouraud88Reseeded,
             Self::Flat | Self::Gouraud88Reseeded | Self::GouraudTessellated | Self::PhongTable | Self::Phong => {
-                Interpolation::GouraudReseeded
+                Interpolation::Gouraud88Reseeded
             }
         }
     }
@@ -70,7 +70,7 @@ impl Shading {
     #[must_use]
     pub const fn in_integers(self) -> Self {
         match self {
-            Self::GouraudTessellated | Self::PhongTable | Self::Phong | Self::Float => Self::Gouraud88Reseeded,
+            Self::GouraudTessellated | Self::PhongTable | Self::Phong | Self::GouraudFloat => Self::Gouraud88Reseeded,
             shading => shading,
         }
     }

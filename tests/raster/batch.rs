@@ -310,7 +310,7 @@ fn r4_large_triangles_of_batches_start_exactly() {
     // By the number of squares that a batch divides them into.
     let (mut larger, mut smaller) = (0, 0);
     for _ in 0..320 {
-        let interpolation = random.one_of(&[Interpolation::Gouraud, Interpolation::GouraudReseeded]);
+        let interpolation = random.one_of(&[Interpolation::Gouraud88, Interpolation::Gouraud88Reseeded]);
         let triangle = (shapes::with_exact_starts(&mut random), interpolation);
         let [columns, rows] = [Vertex::x, Vertex::y].map(|of| {
             let along = triangle.0.each_ref().map(|v| of(v).to_bits());
@@ -373,7 +373,7 @@ fn tiny_triangles_together_are_those_one_by_one() {
         let triangles: Vec<_> = (0..3_000)
             .map(|i| {
                 let reach = if (1_000..1_300).contains(&i) { 900 } else { reach };
-                (small(&mut random, 64, 32, reach), Interpolation::Gouraud)
+                (small(&mut random, 64, 32, reach), Interpolation::Gouraud88)
             })
             .collect();
         let faces: Vec<EffectFace> =
@@ -384,7 +384,7 @@ fn tiny_triangles_together_are_those_one_by_one() {
             let drawn = draw(&mut Raster::new(frame).with_kernel(kernel));
             (bytes, drawn)
         };
-        let plain = PixelPipeline { source: ShadeSource::Shaded(Interpolation::Gouraud), ..PixelPipeline::PLAIN };
+        let plain = PixelPipeline { source: ShadeSource::Shaded(Interpolation::Gouraud88), ..PixelPipeline::PLAIN };
         let expected = drawn_alike(&triangles, format_args!("reach {reach}"), on);
         covered += expected.1.covered;
         for kernel in Kernel::available() {

@@ -642,7 +642,7 @@ fn texels_at_their_borders_are_the_oracles() {
         let levels = (random.within(0, 1) == 0).then_some(&stock.texels[..]);
         let mapping = random.one_of(&[Mapping::Perspective, Mapping::Perspective, Mapping::Affine]);
         let look = PixelPipeline {
-            source: ShadeSource::Shaded(Interpolation::GouraudReseeded),
+            source: ShadeSource::Shaded(Interpolation::Gouraud88Reseeded),
             texture: Some(texture(&stock.texels, levels, (bits, 8), mapping, [&stock.tables[0]; 3])),
             ..PixelPipeline::PLAIN
         };
@@ -677,7 +677,7 @@ fn narrow_clip_rectangles_change_no_byte_inside() {
         });
         let attributes = attributes(&mut random);
         let look = PixelPipeline {
-            source: ShadeSource::Shaded(random.one_of(&[Interpolation::GouraudReseeded, Interpolation::Flat(77)])),
+            source: ShadeSource::Shaded(random.one_of(&[Interpolation::Gouraud88Reseeded, Interpolation::Flat(77)])),
             texture: Some(texture(
                 &stock.texels,
                 None,
@@ -748,8 +748,8 @@ fn without_effects_faces_are_plain_triangles() {
 /// A look without what needs stages, so that one loop shows its texels.
 fn fused(look: PixelPipeline<'_>) -> PixelPipeline<'_> {
     let source = match look.source {
-        ShadeSource::Shaded(Interpolation::Flat(_) | Interpolation::Gouraud) => look.source,
-        _ => ShadeSource::Shaded(Interpolation::GouraudReseeded),
+        ShadeSource::Shaded(Interpolation::Flat(_) | Interpolation::Gouraud88) => look.source,
+        _ => ShadeSource::Shaded(Interpolation::Gouraud88Reseeded),
     };
     let texture = look.texture.map(|stage| TextureStage { levels: None, ..stage });
     PixelPipeline { source, channels: None, dither: None, texture, ..look }

@@ -403,12 +403,13 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         let faces: Vec<Face> = (0..8)
             .map(|_| {
                 let vertices = triangle(&mut random, width.into(), height.into());
-                (with_depths(vertices, || random.within(0, near)), Interpolation::GouraudReseeded)
+                (with_depths(vertices, || random.within(0, near)), Interpolation::Gouraud88Reseeded)
             })
             .collect();
         let (mut bytes, mut cells) = (vec![0; (WIDTH * HEIGHT) as usize], vec![0_u128; (WIDTH * HEIGHT) as usize]);
         for (vertices, _) in &faces {
-            for oracle::Pixel { x, y, byte } in oracle::pixels(vertices, Interpolation::GouraudReseeded, width, height)
+            for oracle::Pixel { x, y, byte } in
+                oracle::pixels(vertices, Interpolation::Gouraud88Reseeded, width, height)
             {
                 let place = (y * width + x) as usize;
                 let cell = u128::from(oracle::depth_at(vertices, x, y)).div_ceil(16_384).min(65_535);

@@ -15,12 +15,12 @@ const HEIGHT: u32 = 24;
 
 /// The shadings with exact cover, and the report's name for the largest error of their bytes.
 const EXACT: &[(Interpolation, &str)] = &[
-    (Interpolation::Gouraud, "shades off in gouraud-8.8"),
-    (Interpolation::GouraudReseeded, "in gouraud-8.8-reseeded"),
+    (Interpolation::Gouraud88, "shades off in gouraud-8.8"),
+    (Interpolation::Gouraud88Reseeded, "in gouraud-8.8-reseeded"),
     (Interpolation::Gouraud1616, "in gouraud-16.16"),
     (Interpolation::GouraudHyperbolic, "in gouraud-hyperbolic"),
     #[cfg(feature = "alloc")]
-    (Interpolation::Float, "in float"),
+    (Interpolation::GouraudFloat, "in float"),
 ];
 
 /// All shadings.
@@ -388,8 +388,8 @@ fn d3_depth_is_as_defined_and_the_first_of_equals_stays() {
     let mut replaced = 0;
     while tried.more() {
         let interpolation = random.one_of(&[
-            Interpolation::GouraudReseeded,
-            Interpolation::Gouraud,
+            Interpolation::Gouraud88Reseeded,
+            Interpolation::Gouraud88,
             Interpolation::GouraudHyperbolic,
             Interpolation::Flat(7),
         ]);
@@ -456,7 +456,7 @@ fn depth_buffers_hold_what_their_frame_holds() {
 const ON_THE_FACE: &[(Interpolation, f64)] = &[
     (Interpolation::GouraudHyperbolic, 0.0),
     #[cfg(feature = "alloc")]
-    (Interpolation::Float, 1.0 / 8192.0),
+    (Interpolation::GouraudFloat, 1.0 / 8192.0),
 ];
 
 /// C5: w from 1 to 10⁴ within one triangle. The truth is the shade that is linear on the face, at the rounded vertices,
@@ -530,7 +530,7 @@ fn a_depth_buffer_changes_no_byte_of_one_triangle() {
         let [x0, y0] = [random.within(0, 40) as u32, random.within(0, 4) as u32];
         let clip = Rect { x0, y0, x1: width - random.within(0, 30) as u32, y1: height };
         let interpolation =
-            random.one_of(&[Interpolation::Gouraud, Interpolation::GouraudReseeded, Interpolation::Flat(7)]);
+            random.one_of(&[Interpolation::Gouraud88, Interpolation::Gouraud88Reseeded, Interpolation::Flat(7)]);
         let kernels: Vec<Kernel> = Kernel::available().collect();
         let kernel = kernels[number % kernels.len()];
         let draw = |depths: Option<&mut [u32]>| {
@@ -549,7 +549,7 @@ fn a_depth_buffer_changes_no_byte_of_one_triangle() {
         let (plain, tested) = (draw(None), draw(Some(&mut vec![0; (width * height) as usize])));
         assert!(plain == tested, "{kernel}, {interpolation:?}: {vertices:?} in {clip:?}");
         tried.add(1);
-        if breadth < 16_000 || interpolation != Interpolation::GouraudReseeded {
+        if breadth < 16_000 || interpolation != Interpolation::Gouraud88Reseeded {
             continue;
         }
         // By the definition, some rows are reseeded and others are not.
@@ -576,7 +576,7 @@ fn a_list_is_drawn_as_triangle_by_triangle() {
         let length = random.one_of(&[0, 1, 127, 128, 129, 300]) as usize;
         // One in five does not fit into a batch.
         let pick = |random: &mut Random| {
-            if random.within(0, 4) == 0 { random.one_of(&all) } else { Interpolation::GouraudReseeded }
+            if random.within(0, 4) == 0 { random.one_of(&all) } else { Interpolation::Gouraud88Reseeded }
         };
         let list: Vec<_> =
             (0..length).map(|_| (triangle(&mut random, width.into(), height.into()), pick(&mut random))).collect();

@@ -72,7 +72,7 @@ fn every_shape_on_every_shading_is_the_oracles_frame() {
 #[test]
 fn many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles() {
     let mut tried = Tried::new("many_faces_whose_every_quotient_is_a_whole_number_are_the_oracles", 2);
-    for shading in [Shading::GouraudHyperbolic, Shading::Float] {
+    for shading in [Shading::GouraudHyperbolic, Shading::GouraudFloat] {
         let mut scene = turned(shapes::sphere(48, 24), 20.0);
         scene.ambient = 64.5 / 255.0;
         for material in &mut scene.objects_mut()[0].materials {

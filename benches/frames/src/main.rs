@@ -48,7 +48,7 @@ fn next_frame(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Result<(
 #[inline(never)]
 fn next_frame_of_list(triangles: &[[Vertex; 3]], vga: &mut Vga, kernel: Kernel) -> Result<(), RasterError> {
     let frame = Frame::new(vga.pixels_mut(), Vga::WIDTH as u32, Vga::HEIGHT as u32, Vga::WIDTH)?;
-    let all = triangles.iter().map(|corners| (corners, Interpolation::Gouraud));
+    let all = triangles.iter().map(|corners| (corners, Interpolation::Gouraud88));
     Raster::new(frame).with_kernel(kernel).triangles(all);
     Ok(())
 }

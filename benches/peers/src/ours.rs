@@ -15,7 +15,7 @@ use crate::{HEIGHT, WIDTH};
 fn interpolation(vertices: &[Vertex; 3], drawing: Drawing) -> Interpolation {
     match drawing {
         Drawing::Flat => Interpolation::Flat(vertices[0].shade().nearest()),
-        _ => Interpolation::GouraudReseeded,
+        _ => Interpolation::Gouraud88Reseeded,
     }
 }
 
@@ -156,7 +156,7 @@ impl Candidate for Effects<'_> {
 
     fn draw(&mut self) {
         let (drawing, material) = (self.drawing, self.material);
-        let interpolation = if drawing.is_lit() { Interpolation::GouraudReseeded } else { Interpolation::Flat(255) };
+        let interpolation = if drawing.is_lit() { Interpolation::Gouraud88Reseeded } else { Interpolation::Flat(255) };
         let pipeline = PixelPipeline {
             source: ShadeSource::Shaded(interpolation),
             texture: Some(TextureStage {

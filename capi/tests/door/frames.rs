@@ -36,8 +36,8 @@ struct Run {
 fn shading(interpolation: Interpolation) -> Option<(u32, u32)> {
     Some(match interpolation {
         Interpolation::Flat(index) => (0, index.into()),
-        Interpolation::GouraudReseeded => (1, 0),
-        Interpolation::Gouraud => (2, 0),
+        Interpolation::Gouraud88Reseeded => (1, 0),
+        Interpolation::Gouraud88 => (2, 0),
         Interpolation::Gouraud1616 => (3, 0),
         Interpolation::GouraudHyperbolic => (4, 0),
         _ => return None,

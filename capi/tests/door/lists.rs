@@ -10,8 +10,8 @@ use crate::{material, mesh, target};
 
 const SHADINGS: [Interpolation; 5] = [
     Interpolation::Flat(77),
-    Interpolation::GouraudReseeded,
-    Interpolation::Gouraud,
+    Interpolation::Gouraud88Reseeded,
+    Interpolation::Gouraud88,
     Interpolation::Gouraud1616,
     Interpolation::GouraudHyperbolic,
 ];

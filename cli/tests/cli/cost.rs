@@ -89,9 +89,13 @@ fn everything_is_measured_and_written() {
     // Where cover is exact, a pixel shows a face other than the true one only if two depths differ by no more than
     // rounding: in the same pixels, whatever the shading.
     let cover_errors = |shading| of(shading)["cover_errors"].as_u64().expect("a count");
-    for shading in
-        [Shading::Gouraud88Reseeded, Shading::Gouraud1616, Shading::GouraudHyperbolic, Shading::Phong, Shading::Float]
-    {
+    for shading in [
+        Shading::Gouraud88Reseeded,
+        Shading::Gouraud1616,
+        Shading::GouraudHyperbolic,
+        Shading::Phong,
+        Shading::GouraudFloat,
+    ] {
         assert_eq!(cover_errors(shading), cover_errors(Shading::Gouraud88), "{shading}");
     }
     assert!(cover_errors(Shading::GouraudVintage) > 1_000 * cover_errors(Shading::Gouraud88).max(1));

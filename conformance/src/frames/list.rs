@@ -140,7 +140,7 @@ impl List {
     fn lights_and_palettes(&mut self) {
         let (ordered, blue_noise) = (Some(DitherPattern::Ordered), Some(DitherPattern::BlueNoise));
         for (name, dither) in [("plain", None), ("dithered", ordered), ("blue-noise", blue_noise)] {
-            for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong, Shading::Float] {
+            for shading in [Shading::Flat, Shading::Gouraud88Reseeded, Shading::Phong, Shading::GouraudFloat] {
                 self.vga(format!("light/coloured-lamps/{name}/{shading}"), with(shading), move || {
                     let mut scene = pair(1.0);
                     scene.palette = colors();
@@ -153,7 +153,7 @@ impl List {
         for (name, dither, last) in
             [("dithered", ordered, Shading::PhongTable), ("blue-noise", blue_noise, Shading::Phong)]
         {
-            for shading in [Shading::Gouraud88, Shading::Gouraud1616, Shading::Float, last] {
+            for shading in [Shading::Gouraud88, Shading::Gouraud1616, Shading::GouraudFloat, last] {
                 self.vga(format!("light/{name}-ramps/{shading}"), with(shading), move || {
                     let mut scene = pair(2.0);
                     scene.palette = Some(builtin::MATERIALS_16X16.clone());
@@ -427,12 +427,12 @@ const EFFECTS: [(&str, Change); 18] = [
 /// Scenes for frames of shapes other than the VGA's.
 const CANVASES: [(&str, Change, Shading); 10] = [
     ("plain", |_| {}, Shading::Gouraud88Reseeded),
-    ("float", |_| {}, Shading::Float),
+    ("float", |_| {}, Shading::GouraudFloat),
     ("hyperbolic", |_| {}, Shading::GouraudHyperbolic),
     ("phong-in-fog", |scene| (EFFECTS[0].1)(scene), Shading::Phong),
     ("dither", |scene| (EFFECTS[6].1)(scene), Shading::Gouraud88Reseeded),
     ("texture", |scene| (EFFECTS[8].1)(scene), Shading::Gouraud88Reseeded),
-    ("mipmaps", |scene| (EFFECTS[11].1)(scene), Shading::Float),
+    ("mipmaps", |scene| (EFFECTS[11].1)(scene), Shading::GouraudFloat),
     ("glass", |scene| (EFFECTS[15].1)(scene), Shading::Gouraud88),
     ("everything", |scene| (EFFECTS[17].1)(scene), Shading::Gouraud88Reseeded),
     (

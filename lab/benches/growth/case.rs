@@ -177,7 +177,7 @@ pub(crate) fn pixels() -> Vec<Case> {
         let mut bytes = vec![0; Vga::WIDTH * Vga::HEIGHT];
         let frame = move || {
             let frame = Frame::new(&mut bytes, Vga::WIDTH as u32, Vga::HEIGHT as u32, Vga::WIDTH).expect("legal");
-            let all = triangles.iter().map(|triangle| (triangle, Interpolation::GouraudReseeded));
+            let all = triangles.iter().map(|triangle| (triangle, Interpolation::Gouraud88Reseeded));
             Raster::new(frame).triangles(all).pixels.into()
         };
         Case::new(pixels, count as f64, frame)

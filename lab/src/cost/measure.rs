@@ -409,7 +409,7 @@ pub(super) mod tests {
 
     #[test]
     fn a_shading_is_efficient_that_none_beats() {
-        use Shading::{Flat, Float, Gouraud88, Gouraud1616, Phong};
+        use Shading::{Flat, Gouraud88, Gouraud1616, GouraudFloat, Phong};
         let mut rows = [
             row(Flat, 10.0, 9.0, &[]),
             row(Gouraud88, 20.0, 5.0, &[Gouraud1616]),
@@ -417,7 +417,7 @@ pub(super) mod tests {
             row(Gouraud1616, 21.0, 4.5, &[Gouraud88]),
             row(Phong, 90.0, 0.3, &[]),
             // As close to the truth as another one, and slower.
-            row(Float, 95.0, 4.5, &[]),
+            row(GouraudFloat, 95.0, 4.5, &[]),
         ];
         mark_efficient(&mut rows);
         assert_eq!(rows.each_ref().map(|row| row.efficient), [true, true, true, true, false]);

@@ -187,12 +187,12 @@ mod tests {
 
     #[test]
     fn no_pair_is_listed_twice() {
-        use Shading::{Flat, Float, Gouraud88};
+        use Shading::{Flat, Gouraud88, GouraudFloat};
         let rows = [
-            row(Float, 3.0, 0.0, &[Flat]),
-            row(Flat, 1.0, 0.0, &[Float, Gouraud88]),
+            row(GouraudFloat, 3.0, 0.0, &[Flat]),
+            row(Flat, 1.0, 0.0, &[GouraudFloat, Gouraud88]),
             row(Gouraud88, 2.0, 0.0, &[Flat]),
         ];
-        assert_eq!(ties(&study(rows.to_vec(), Vec::new())), [(Flat, vec![Gouraud88, Float])]);
+        assert_eq!(ties(&study(rows.to_vec(), Vec::new())), [(Flat, vec![Gouraud88, GouraudFloat])]);
     }
 }

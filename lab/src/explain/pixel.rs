@@ -328,7 +328,7 @@ impl Inputs<'_> {
     fn against(&self, met: &Met, triangle: usize, shown: [u8; 3], ramp: Ramp) -> Vec<Against> {
         let Some(steps) = ramp.entries().checked_sub(1).filter(|steps| *steps > 0) else { return Vec::new() };
         let shown = shown.map(|byte| 255.0 * (f64::from(byte) - f64::from(ramp.first())) / f64::from(steps));
-        let on_face = matches!(met.interpolation, Interpolation::GouraudHyperbolic | Interpolation::Float);
+        let on_face = matches!(met.interpolation, Interpolation::GouraudHyperbolic | Interpolation::GouraudFloat);
         let standards = [Standard::Gouraud, Standard::GouraudPerspective, Standard::Lit];
         let wanted = standards.into_iter().filter(|s| *s != Standard::GouraudPerspective || on_face);
         let face = Face { object: met.object, triangle };

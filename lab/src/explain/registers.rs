@@ -18,7 +18,7 @@ use mode13h::raster::{Interpolation, Vertex};
 ///     Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::from(shade), 1)
 /// };
 /// let triangle = [corner(0, 0, 40)?, corner(8, 0, 200)?, corner(0, 4, 40)?];
-/// let registers = Registers::at(2, 0, &triangle, (Interpolation::Gouraud, true), 320).expect("the loop's");
+/// let registers = Registers::at(2, 0, &triangle, (Interpolation::Gouraud88, true), 320).expect("the loop's");
 /// // From 50 in the first pixel, and a half, by 20 a pixel.
 /// assert_eq!((registers.edi, registers.eax, registers.ebx, registers.cx), (2, 0x5A80, 0x1400, 5));
 /// # Ok::<(), mode13h::raster::RasterError>(())
@@ -57,7 +57,7 @@ impl Registers {
         let trace = ShadeTrace::new(&triangle, triangle.shades(), interpolation, &row, column);
         let Progression::Accumulator(sums) = trace.way else { return None };
         let end = match interpolation {
-            Interpolation::GouraudReseeded => (row.last + 1).min(sums.start_at + RESEED),
+            Interpolation::Gouraud88Reseeded => (row.last + 1).min(sums.start_at + RESEED),
             _ => row.last + 1,
         };
         Some(Self {

@@ -63,11 +63,11 @@ impl Pixel {
         let by_shading = match face.interpolation {
             Interpolation::Flat(_) => Shading::Flat,
             Interpolation::GouraudVintage => Shading::GouraudVintage,
-            Interpolation::Gouraud => Shading::Gouraud88,
-            Interpolation::GouraudReseeded => Shading::Gouraud88Reseeded,
+            Interpolation::Gouraud88 => Shading::Gouraud88,
+            Interpolation::Gouraud88Reseeded => Shading::Gouraud88Reseeded,
             Interpolation::Gouraud1616 => Shading::Gouraud1616,
             Interpolation::GouraudHyperbolic => Shading::GouraudHyperbolic,
-            Interpolation::Float => Shading::Float,
+            Interpolation::GouraudFloat => Shading::GouraudFloat,
             _ => self.shading,
         };
         match seen.shaded_by {

@@ -54,7 +54,7 @@ pub(super) struct Face {
 
 /// A face shaded linearly between its corners.
 pub(super) const fn gouraud(corners: [Corner; 3]) -> Face {
-    Face { corners, interpolation: Interpolation::GouraudReseeded }
+    Face { corners, interpolation: Interpolation::Gouraud88Reseeded }
 }
 
 /// A face with one byte.

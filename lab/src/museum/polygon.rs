@@ -63,7 +63,7 @@ pub enum PolygonError {
         needed: usize,
     },
     /// The table interpolates shades in 8.8, linearly along edges and rows; it supports only flat,
-    /// [`Gouraud`](Interpolation::Gouraud) and [`GouraudReseeded`](Interpolation::GouraudReseeded).
+    /// [`Gouraud`](Interpolation::Gouraud88) and [`GouraudReseeded`](Interpolation::Gouraud88Reseeded).
     #[error("a table of rows cannot shade as {0:?}")]
     Interpolation(Interpolation),
 }
@@ -211,7 +211,7 @@ fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [Ta
 /// let mut bytes = [0; 4 * 2];
 /// let mut frame = Frame::new(&mut bytes, 4, 2, 4)?;
 /// let clip = frame.bounds();
-/// draw(&mut frame, clip, &quad, Interpolation::Gouraud, &mut [TableRow::default(); 2])?;
+/// draw(&mut frame, clip, &quad, Interpolation::Gouraud88, &mut [TableRow::default(); 2])?;
 /// assert_eq!(bytes, [20, 40, 60, 80, 20, 40, 60, 80]);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -227,8 +227,8 @@ pub fn draw(
     table: &mut [TableRow],
 ) -> Result<DrawStats, PolygonError> {
     let reseed = match interpolation {
-        Interpolation::Flat(_) | Interpolation::Gouraud => i32::MAX,
-        Interpolation::GouraudReseeded => RESEED,
+        Interpolation::Flat(_) | Interpolation::Gouraud88 => i32::MAX,
+        Interpolation::Gouraud88Reseeded => RESEED,
         other => return Err(PolygonError::Interpolation(other)),
     };
     let held = frame.rows();

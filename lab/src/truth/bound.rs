@@ -60,7 +60,7 @@ impl Bound {
             Shading::Gouraud88Reseeded => (Standard::Gouraud, 0.25),
             Shading::Gouraud1616 => (Standard::Gouraud, width / 65_536.0),
             Shading::GouraudHyperbolic => (Standard::GouraudPerspective, DEPTHS),
-            Shading::Float => (Standard::GouraudPerspective, DEPTHS + 1.0 / 8_192.0),
+            Shading::GouraudFloat => (Standard::GouraudPerspective, DEPTHS + 1.0 / 8_192.0),
             Shading::Phong => (Standard::Lit, 0.01),
             // The others claim none.
             _ => return None,

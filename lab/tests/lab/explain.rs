@@ -408,8 +408,8 @@ fn what_is_not_in_the_frame_is_refused() {
 
 /// The shadings whose loop has a running sum, and the number of fraction bits in it.
 const LOOPS: [(Interpolation, u32); 4] = [
-    (Interpolation::Gouraud, 8),
-    (Interpolation::GouraudReseeded, 8),
+    (Interpolation::Gouraud88, 8),
+    (Interpolation::Gouraud88Reseeded, 8),
     (Interpolation::Gouraud1616, 16),
     (Interpolation::GouraudVintage, 8),
 ];
@@ -475,7 +475,7 @@ fn what_keeps_no_sum_has_no_registers() {
         let triangle = triangles::triangle(&mut random, 320, 200);
         let drawn = triangles::draw(&triangle, Interpolation::Flat(9), 320, 200, None, 0);
         let Some(place) = drawn.iter().position(|byte| *byte == 9) else { continue };
-        for interpolation in [Interpolation::Flat(9), Interpolation::GouraudHyperbolic, Interpolation::Float] {
+        for interpolation in [Interpolation::Flat(9), Interpolation::GouraudHyperbolic, Interpolation::GouraudFloat] {
             let (x, y) = (place as u32 % 320, place as u32 / 320);
             assert_eq!(Registers::at(x, y, &triangle, (interpolation, true), 320), None);
         }

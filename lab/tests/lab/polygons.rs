@@ -97,7 +97,7 @@ fn check(vertices: &[Vertex]) -> u32 {
     let (low, high) = (shades().min().unwrap_or(0), shades().max().unwrap_or(0));
     let range = (low + 128) >> 8..=(high + 128) >> 8;
     let mut covered = 0;
-    for (interpolation, reseed) in [(Interpolation::GouraudReseeded, RESEED), (Interpolation::Gouraud, 1 << 20)] {
+    for (interpolation, reseed) in [(Interpolation::Gouraud88Reseeded, RESEED), (Interpolation::Gouraud88, 1 << 20)] {
         let expected = expected(vertices, reseed);
         let mut counts = DrawStats::default();
         let drawn = triangles::drawn(|empty| {
@@ -199,7 +199,7 @@ fn r8_polygons_clipped_and_in_bands() {
         let vertices = shaded(&mut random, &hull);
         let clip = rect(&mut random, WIDTH, HEIGHT);
         let rows_each = random.within(1, HEIGHT.into()) as u32;
-        for interpolation in [Interpolation::GouraudReseeded, Interpolation::Gouraud, Interpolation::Flat(9)] {
+        for interpolation in [Interpolation::Gouraud88Reseeded, Interpolation::Gouraud88, Interpolation::Flat(9)] {
             let (mut whole, _) = Sheet::WHOLE.draw(&vertices, interpolation).expect("convex");
             triangles::clip_to(&mut whole, WIDTH, clip, 0);
             let sheet = Sheet { clip, rows_each, empty: 0 };

@@ -242,7 +242,7 @@ mod tests {
                 bytes
             };
             let alone = draw(&mut |raster| {
-                raster.triangle(&vertices, crate::raster::Interpolation::Gouraud);
+                raster.triangle(&vertices, crate::raster::Interpolation::Gouraud88);
             });
             let together = draw(&mut |raster| {
                 raster.batch_with_effects(&mut batch, &PixelPipeline::PLAIN);

@@ -38,7 +38,10 @@ impl<'a> Direct<'a> {
             return None;
         }
         let is_linear = pipeline.dither().is_none()
-            && matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud | Interpolation::GouraudReseeded));
+            && matches!(
+                pipeline.source,
+                ShadeSource::Shaded(Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded)
+            );
         let Some(stage) = pipeline.texture() else { return is_linear.then_some(Self::Shades) };
         if stage.mapping == Mapping::Every16 {
             return None;

@@ -235,8 +235,8 @@ impl Wanted {
             want(Value::Channel(i), channels && (by_table || matches!(pipeline.source, ShadeSource::Shaded(_))));
             want(Value::Slope(i), by_table && !channels && i < 2);
         }
-        let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud));
-        let shade = !reseeds || matches!(pipeline.source, ShadeSource::Shaded(Interpolation::GouraudReseeded));
+        let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud88));
+        let shade = !reseeds || matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud88Reseeded));
         let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         Self { texture, last_level, shade, values, slots, reseeds }
     }

@@ -187,7 +187,7 @@ impl<'a> PixelPipeline<'a> {
             ShadeSource::Lit(_) | ShadeSource::LitEvery(..) | ShadeSource::Curved(_)
                 if cfg!(mode13h_leave_out = "phong") =>
             {
-                ShadeSource::Shaded(Interpolation::GouraudReseeded)
+                ShadeSource::Shaded(Interpolation::Gouraud88Reseeded)
             }
             source => source,
         }
@@ -230,7 +230,7 @@ impl<'a> PixelPipeline<'a> {
 impl PixelPipeline<'_> {
     /// Linear shades and nothing else.
     pub const PLAIN: Self = Self {
-        source: ShadeSource::Shaded(Interpolation::GouraudReseeded),
+        source: ShadeSource::Shaded(Interpolation::Gouraud88Reseeded),
         channels: None,
         dither: None,
         texture: None,

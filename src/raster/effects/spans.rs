@@ -319,7 +319,7 @@ impl<'a> Spans<'a> {
     pub(super) fn fill(&self, shaded: Shaded, out: &mut [u8], kernel: Kernel) {
         match shaded.interpolation {
             Interpolation::Flat(index) => out[..self.pixels()].fill(index),
-            Interpolation::Gouraud | Interpolation::GouraudReseeded => {
+            Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
                 fill_linear_at_best(kernel, kernel, self, shaded, out);
             }
             _ => fill_by_shader(kernel.simd_level(), self, shaded, out, kernel),
@@ -361,7 +361,7 @@ pub(super) struct Shaded {
 impl Shaded {
     /// A value that is reseeded with every span.
     pub(super) fn linear(value: Value) -> Self {
-        Self { value: Some(value), interpolation: Interpolation::GouraudReseeded, dither: None }
+        Self { value: Some(value), interpolation: Interpolation::Gouraud88Reseeded, dither: None }
     }
 }
 

@@ -979,7 +979,7 @@ mod tests {
         };
         for kernel in Kernel::available() {
             // Only the shade, and an image with it; each over a frame of 0 and one of 255, which shows what is covered.
-            let sources = [Interpolation::Flat(77), Interpolation::Gouraud, Interpolation::GouraudHyperbolic];
+            let sources = [Interpolation::Flat(77), Interpolation::Gouraud88, Interpolation::GouraudHyperbolic];
             let mappings = [Mapping::Affine, Mapping::Perspective];
             for (source, mapping) in sources.into_iter().flat_map(|source| mappings.map(|mapping| (source, mapping))) {
                 let shaded = PixelPipeline { source: ShadeSource::Shaded(source), ..PixelPipeline::PLAIN };

@@ -32,7 +32,7 @@ use crate::settings::Shading;
 /// Shadings of faces that are linear on the screen, of those that are linear on the face, and of those lit at every
 /// pixel.
 pub(super) const LINEAR: FaceShading = FaceShading::By(Shading::Gouraud88Reseeded);
-pub(super) const FLOAT: FaceShading = FaceShading::By(Shading::Float);
+pub(super) const FLOAT: FaceShading = FaceShading::By(Shading::GouraudFloat);
 pub(super) const PHONG: FaceShading = FaceShading::By(Shading::Phong);
 
 /// Rounding of a linear shade reseeded every 64 pixels: a half, 1/512 for the vertices' shades, a quarter of drift, and

@@ -29,7 +29,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
         Shading::Gouraud88Reseeded,
         Shading::Gouraud1616,
         Shading::GouraudHyperbolic,
-        Shading::Float,
+        Shading::GouraudFloat,
     ];
     let (mut seen, mut clipped, mut covered) = (0_u64, 0_u64, 0_u64);
     while tried.more() {

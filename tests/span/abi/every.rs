@@ -134,7 +134,7 @@ fn triangles(random: &mut Random, (width, height): (i64, i64)) -> Vec<([Vertex; 
     (0..some)
         .map(|_| {
             let interpolation =
-                random.one_of(&[Interpolation::Flat(7), Interpolation::Gouraud, Interpolation::GouraudReseeded]);
+                random.one_of(&[Interpolation::Flat(7), Interpolation::Gouraud88, Interpolation::Gouraud88Reseeded]);
             let Some(reach) = reach else { return (triangle(random, width, height), interpolation) };
             // The frame's corners more often than elsewhere.
             let end = random.one_of(&[0, 1]);

@@ -25,7 +25,7 @@ pub(crate) fn triangles(numbers: &[u8]) -> Vec<u8> {
     let corners: Vec<[f64; 3]> = numbers.as_chunks().0.to_vec();
     for triangle in corners.as_chunks::<3>().0 {
         if let [Some(a), Some(b), Some(c)] = triangle.map(vertex) {
-            raster.triangle(&[a, b, c], Interpolation::Gouraud);
+            raster.triangle(&[a, b, c], Interpolation::Gouraud88);
         }
     }
     bytes

@@ -36,9 +36,11 @@ struct Entrants {
 impl Entrants {
     /// Every scene, with the shadings that the claims about it need.
     fn new() -> Self {
-        use Shading::{Flat, Float, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Phong, PhongTable};
+        use Shading::{
+            Flat, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudFloat, GouraudHyperbolic, Phong, PhongTable,
+        };
         let mut entrants = Self { scenes: Vec::new(), list: Vec::new() };
-        let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, Float, Phong, PhongTable];
+        let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, GouraudFloat, Phong, PhongTable];
         entrants.add(scenes::torus(), &all);
         for slices in SLICES {
             entrants.add(scenes::sphere(slices, true), &[Flat, Gouraud88, Gouraud88Reseeded, Phong, PhongTable]);
@@ -103,7 +105,7 @@ pub(super) fn claims(
     let (shortest, wide, float) = (
         Configuration::shading(Shading::Gouraud88),
         Configuration::shading(Shading::Gouraud1616),
-        Configuration::shading(Shading::Float),
+        Configuration::shading(Shading::GouraudFloat),
     );
     let everywhere: Vec<Scene> = torus.iter().chain(&floor).cloned().collect();
     let fixed = against(Standard::Gouraud, &everywhere, &[&shortest, &default, &wide], base)?;
@@ -113,7 +115,7 @@ pub(super) fn claims(
         spheres,
         fixed: [0, 1, 2].map(|i| fixed[i].errors()),
         float: float[0].errors(),
-        of_default: [Shading::Gouraud88, Shading::Gouraud1616, Shading::Float]
+        of_default: [Shading::Gouraud88, Shading::Gouraud1616, Shading::GouraudFloat]
             .map(|shading| times.ratio(shading, Shading::Gouraud88Reseeded, TORUS)),
         linear_on_torus: between(linear, torus)?,
         linear_on_floor: between(linear, &floor)?,

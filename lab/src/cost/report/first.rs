@@ -79,7 +79,7 @@ fn plain_name(shading: Shading) -> String {
         Shading::GouraudTessellated => "a straight blend on split faces",
         Shading::PhongTable => "light from a table",
         Shading::Phong => "light at every pixel",
-        Shading::Float => "a blend in floating point",
+        Shading::GouraudFloat => "a blend in floating point",
         _ => return shading.to_string(),
     };
     name.to_string()

@@ -78,7 +78,7 @@ fn whole() -> Study {
         Shading::ALL.into_iter().zip(1_u8..).map(|(of, i)| shading(of, f64::from(i), 0.7, 20.0 / f64::from(i)));
     let mut study = study(shadings.collect());
     study.input = "<torus & \"cone\">'s".to_string();
-    study.shadings[2].as_fast_as = vec![Shading::Flat, Shading::Float];
+    study.shadings[2].as_fast_as = vec![Shading::Flat, Shading::GouraudFloat];
     study.shadings[3].efficient = false;
     study.budget = vec![budget(8.0, 1.0, Some((Shading::Phong, 0.5))), budget(1.0, 0.93, None)];
     let goal = |max_time, largest| TimeRow {
