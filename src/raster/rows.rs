@@ -13,7 +13,7 @@ use super::setup::{Corners8, Edges, Floats, FrameLayout, Ints, TriangleSetup8, V
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
-use crate::span::list::{DepthSteps, SpanList, Spans8, Target};
+use crate::span::list::{DepthSteps, Records, SpanList, Spans8, Target};
 
 /// The greatest height, in rows, of small triangles that are walked eight at a time; their rows are
 /// sorted by triangle afterwards.
@@ -104,6 +104,8 @@ pub(super) struct Batches {
     current: usize,
     /// The index of the first pick of batch 0.
     pub(super) first: usize,
+    /// The records of their spans.
+    pub(super) records: Records,
 }
 
 impl Batches {
@@ -112,7 +114,7 @@ impl Batches {
 
     /// Batch 0, from this pick on.
     pub(super) const fn from_pick(first: usize) -> Self {
-        Self { current: 0, first }
+        Self { current: 0, first, records: Records::NONE }
     }
 
     /// Returns whether there is no room for another.
@@ -124,8 +126,10 @@ impl Batches {
     /// Begins the batch from pick `first` on, as batch 0 again once all spans have been drawn.
     #[inline(always)]
     pub(super) fn begin(&mut self, first: usize) {
-        let starts_anew = first == 0 || self.are_full();
-        *self = if starts_anew { Self { current: 0, first } } else { Self { current: self.current + 1, ..*self } };
+        match first == 0 || self.are_full() {
+            true => (self.current, self.first) = (0, first),
+            false => self.current += 1,
+        }
     }
 
     /// The batch being set up.
@@ -159,14 +163,28 @@ pub(super) trait Shades8 {
     /// True if a shade and its step are enough to fill a span.
     const IS_LINEAR: bool;
 
+    /// The batches whose planes and records are stored, if spans need them to be filled.
+    fn batches(&mut self) -> Option<&mut Batches>;
+
     /// Returns whether spans have to be drawn before eight more triangles are set up.
-    fn is_full(&self) -> bool;
+    #[inline(always)]
+    fn is_full(&mut self) -> bool {
+        if let Some(batches) = self.batches() { batches.are_full() } else { false }
+    }
 
     /// Returns whether there is room for the fills of this many rows of eight.
-    fn has_room(&self, rows: usize) -> bool;
+    #[inline(always)]
+    fn has_room(&mut self, rows: usize) -> bool {
+        if let Some(batches) = self.batches() { batches.records.have_room(rows) } else { true }
+    }
 
     /// Begins the eight triangles from pick `first` on.
-    fn begin(&mut self, first: usize);
+    #[inline(always)]
+    fn begin(&mut self, first: usize) {
+        if let Some(batches) = self.batches() {
+            batches.begin(first);
+        }
+    }
 
     /// Sets up eight triangles, and the fills of their spans.
     fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool));
@@ -182,7 +200,8 @@ pub(super) trait Shades8 {
     ) -> S::I32;
 
     /// Completes the set-up of triangle `i` of the eight, which is not a small one.
-    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8);
+    #[inline(always)]
+    fn set_up_large(&mut self, _i: usize) {}
 
     /// Draws the spans of a list and empties it; with `DEPTHS`, only where they are nearer than the
     /// target's cells.
@@ -206,17 +225,9 @@ impl Shades8 for Linear {
     const IS_LINEAR: bool = true;
 
     #[inline(always)]
-    fn is_full(&self) -> bool {
-        false
+    fn batches(&mut self) -> Option<&mut Batches> {
+        None
     }
-
-    #[inline(always)]
-    fn has_room(&self, _: usize) -> bool {
-        true
-    }
-
-    #[inline(always)]
-    fn begin(&mut self, _: usize) {}
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
@@ -244,9 +255,6 @@ impl Shades8 for Linear {
     ) -> S::I32 {
         if self.is_flat { lane.load_i32(s, &self.shades) } else { ends.shade(s, lane, setup, parts.seed) }
     }
-
-    #[inline(always)]
-    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
 
     #[inline(always)]
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {

@@ -160,7 +160,6 @@ impl ShadedFaces<'_> {
 pub(super) struct Shaded8<'a> {
     kind: Kind,
     listed: ShadedFaces<'a>,
-    records: Records,
     data: &'a mut ShadedData,
     /// 16.16: 255·h, and A.
     fraction: Floats,
@@ -186,7 +185,6 @@ impl<'a> Shaded8<'a> {
         Self {
             kind,
             listed: ShadedFaces { triangles, picks, layout, batches: Batches::NONE },
-            records: Records::NONE,
             data,
             fraction: floats,
             area: floats,
@@ -361,18 +359,8 @@ impl Shades8 for Shaded8<'_> {
     const IS_LINEAR: bool = false;
 
     #[inline(always)]
-    fn is_full(&self) -> bool {
-        self.listed.batches.are_full()
-    }
-
-    #[inline(always)]
-    fn has_room(&self, rows: usize) -> bool {
-        self.records.have_room(rows)
-    }
-
-    #[inline(always)]
-    fn begin(&mut self, first: usize) {
-        self.listed.batches.begin(first);
+    fn batches(&mut self) -> Option<&mut Batches> {
+        Some(&mut self.listed.batches)
     }
 
     #[inline(always)]
@@ -401,7 +389,7 @@ impl Shades8 for Shaded8<'_> {
         parts: &Parts<S>,
     ) -> S::I32 {
         let (j, magic) = (ends.j, s.splat_f64(ROUND_MAGIC));
-        let record = self.records.begin();
+        let record = self.listed.batches.records.begin();
         // At most 255.
         let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS));
         // At most 255.
@@ -452,7 +440,7 @@ impl Shades8 for Shaded8<'_> {
 
     /// The exact steps in f32 of a triangle too large for 64-bit sums.
     #[inline(never)]
-    fn set_up_large(&mut self, i: usize, _: &TriangleSetup8) {
+    fn set_up_large(&mut self, i: usize) {
         #[cfg(feature = "alloc")]
         if self.kind == Kind::Float {
             let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
@@ -482,7 +470,7 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     if !HAS_F64 {
         return;
     }
-    shades.records = Records::NONE;
+    shades.listed.batches.records = Records::NONE;
     match shades.kind {
         Kind::Fixed16 => {
             let numbers = &shades.data.numbers;

@@ -351,7 +351,7 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     if rows::has_depths::<P, DEPTHS>(list) {
         setup.put_depth_plane(i, &of.depth_plane(k).raised_by(layout.depth_base));
     }
-    shades.set_up_large(i, setup);
+    shades.set_up_large(i);
     let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
     let pieces = of.pieces(pick);
     // Otherwise a row is one piece, however long.

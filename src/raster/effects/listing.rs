@@ -265,7 +265,6 @@ pub(super) struct ListedFaces<'a> {
     wanted: Wanted,
     pub(super) data: &'a mut SpanData,
     pub(super) batches: Batches,
-    records: Records,
     /// The only face, if its edges are walked.
     pub(super) walked: Option<WalkedFace>,
     /// How one loop per span draws the pixels, where possible.
@@ -411,8 +410,7 @@ impl<'a> EffectSpans<'a> {
     ) -> Self {
         let wanted = Wanted::by(pipeline);
         let direct = Direct::of(pipeline);
-        let (batches, records, walked) = (Batches::NONE, Records::NONE, None);
-        let listed = ListedFaces { faces, wanted, data, batches, records, walked, direct };
+        let listed = ListedFaces { faces, wanted, data, batches: Batches::NONE, walked: None, direct };
         Self { listed, pipeline, buffers }
     }
 
@@ -425,7 +423,7 @@ impl<'a> EffectSpans<'a> {
     /// Empties a list whose spans have been drawn, `nearer` pixels of them.
     pub(super) fn clear(&mut self, list: &mut SpanList, nearer: u32) {
         list.clear(nearer);
-        self.listed.records = Records::NONE;
+        self.listed.batches.records = Records::NONE;
     }
 
     /// Begins face `k`, whose rows are added one by one.
@@ -516,18 +514,8 @@ impl Shades8 for EffectSpans<'_> {
     const IS_LINEAR: bool = false;
 
     #[inline(always)]
-    fn is_full(&self) -> bool {
-        self.listed.batches.are_full()
-    }
-
-    #[inline(always)]
-    fn has_room(&self, rows: usize) -> bool {
-        self.listed.records.have_room(rows)
-    }
-
-    #[inline(always)]
-    fn begin(&mut self, first: usize) {
-        self.listed.batches.begin(first);
+    fn batches(&mut self) -> Option<&mut Batches> {
+        Some(&mut self.listed.batches)
     }
 
     #[inline(always)]
@@ -544,9 +532,9 @@ impl Shades8 for EffectSpans<'_> {
         ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> S::I32 {
-        let ListedFaces { wanted, data, batches, records, .. } = &mut self.listed;
+        let ListedFaces { wanted, data, batches, .. } = &mut self.listed;
         let SpanData { numbers, coordinates, sums, planes } = &mut **data;
-        let (planes, record) = (&planes[batches.current()], records.begin());
+        let (planes, record) = (&planes[batches.current()], batches.records.begin());
         let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
         let Wanted { shade, values, slots, reseeds, texture, .. } = *wanted;
         let inverse = &setup.inverse;
@@ -587,9 +575,6 @@ impl Shades8 for EffectSpans<'_> {
         let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&lanes::NUMBERS));
         s.or_i32(records, s.shl_i32(skipped, 8))
     }
-
-    #[inline(always)]
-    fn set_up_large(&mut self, _: usize, _: &TriangleSetup8) {}
 
     #[inline(always)]
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {

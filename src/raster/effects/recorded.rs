@@ -10,7 +10,7 @@ use crate::mapping::Mapping;
 use crate::raster::columns::{Picks, Triangles};
 use crate::raster::frame::Rect;
 use crate::raster::reference::texture::AffineLevel;
-use crate::raster::rows::{Lane, Parts, RowEnds, Shades8};
+use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use crate::raster::setup::{Corners8, FrameLayout, TriangleSetup8};
 use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
@@ -54,16 +54,8 @@ struct Recorder<'a> {
 impl Shades8 for Recorder<'_> {
     const IS_LINEAR: bool = false;
 
-    fn is_full(&self) -> bool {
-        self.spans.is_full()
-    }
-
-    fn has_room(&self, rows: usize) -> bool {
-        self.spans.has_room(rows)
-    }
-
-    fn begin(&mut self, first: usize) {
-        self.spans.begin(first);
+    fn batches(&mut self) -> Option<&mut Batches> {
+        self.spans.batches()
     }
 
     #[inline(always)]
@@ -81,10 +73,6 @@ impl Shades8 for Recorder<'_> {
         parts: &Parts<S>,
     ) -> S::I32 {
         self.spans.fill_of(s, lane, setup, ends, parts)
-    }
-
-    fn set_up_large(&mut self, i: usize, setup: &TriangleSetup8) {
-        self.spans.set_up_large(i, setup);
     }
 
     fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, _: &mut Target<'_>) {
