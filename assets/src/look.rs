@@ -137,7 +137,7 @@ impl Look {
     }
 }
 
-/// A palette of few colours, from dark to light, in equally many entries each, and without ramps.
+/// A palette of few colours, from dark to light, with equal shares of the entries, and without ramps.
 fn repeated(colors: &[u32]) -> Box<Palette> {
     let all = core::array::from_fn(|i| {
         // Below the number of colours.

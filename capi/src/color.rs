@@ -14,7 +14,7 @@ const TABLE: usize = 65_536;
 /// Reads a palette of 8 bits a channel.
 ///
 /// # Safety
-/// It is null or as long.
+/// `from` is null or holds 768 bytes.
 unsafe fn palette(from: *const u8) -> Outcome<Palette> {
     Ok(Palette::from_colors(
         // SAFETY: by the caller.
@@ -25,7 +25,7 @@ unsafe fn palette(from: *const u8) -> Outcome<Palette> {
 /// Reads the colours of a palette.
 ///
 /// # Safety
-/// It is null or as long.
+/// `from` is null or holds 768 bytes.
 unsafe fn colors(from: *const u8) -> Outcome<[Rgb; 256]> {
     Bytes::new(from, PALETTE)?;
     let mut colors = [Rgb::BLACK; 256];
@@ -40,7 +40,7 @@ unsafe fn colors(from: *const u8) -> Outcome<[Rgb; 256]> {
 /// Writes the colours of a palette.
 ///
 /// # Safety
-/// It is null or as long.
+/// `to` is null or has 768 bytes.
 unsafe fn write(to: *mut u8, colors: &[Rgb; 256], of: impl Fn(Rgb) -> [u8; 3]) -> Outcome {
     Bytes::new(to, PALETTE)?;
     for (i, color) in colors.iter().enumerate() {
@@ -240,7 +240,7 @@ impl Search {
 /// Fills a table with the byte that `byte` returns for each row and column.
 ///
 /// # Safety
-/// It is null or as long.
+/// `table` is null or has 64 KiB.
 unsafe fn fill(table: *mut u8, mut byte: impl FnMut(u8, u8) -> u8) -> Outcome {
     Bytes::new(table, TABLE)?;
     for row in 0..=255 {
@@ -255,7 +255,7 @@ unsafe fn fill(table: *mut u8, mut byte: impl FnMut(u8, u8) -> u8) -> Outcome {
 /// A palette as given, the palette as the card shows it, and a search in the latter.
 ///
 /// # Safety
-/// It is null or as long.
+/// `from` is null or holds 768 bytes.
 unsafe fn searched(from: *const u8) -> Outcome<(Palette, Palette, Search)> {
     // SAFETY: by the caller.
     let palette = unsafe { palette(from) }?;

@@ -73,7 +73,7 @@ fn warm(batch: &mut EffectBatch) {
 /// A table of 64 KiB; `None` where there is none.
 ///
 /// # Safety
-/// `from` is null or as long.
+/// `from` is null or holds 64 KiB.
 unsafe fn table<'a>(from: *const u8, target: &Checked<'_>) -> Outcome<Option<&'a [u8; TABLE]>> {
     if from.is_null() {
         return Ok(None);
@@ -86,7 +86,7 @@ unsafe fn table<'a>(from: *const u8, target: &Checked<'_>) -> Outcome<Option<&'a
 /// A picture.
 ///
 /// # Safety
-/// `from` is null or as long.
+/// `from` is null or holds all texels.
 unsafe fn texels<'a>(from: *const u8, u_bits: u32, v_bits: u32) -> Outcome<(Texels<'a>, Bytes)> {
     if u_bits > Texels::MAX_BITS || v_bits > Texels::MAX_BITS {
         return Err(Refusal::Value);

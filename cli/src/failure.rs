@@ -17,7 +17,7 @@ use mode13h_lab::explain::ExplainError;
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
-  1    Failed: a file could not be read or written, `verify` found a wrong byte, `cost` exceeded a promised error
+  1    Failed: a file could not be read or written, `verify` found a wrong byte, `cost` found a broken promise
   2    Wrong arguments or wrong input
   130  Interrupted";
 

@@ -303,8 +303,8 @@ fn load(path: &Path, options: &Options) -> Result<model_file::Loaded, ModelFileE
 static PERCENT: AtomicU64 = AtomicU64::new(UNKNOWN);
 const UNKNOWN: u64 = u64::MAX;
 
-/// How much has been read of the model that is being loaded by any thread, in percent; `None` if none is, or if nobody
-/// knows how long it is. After 100 the mesh is made.
+/// How much has been read of the model that is being loaded by any thread, in percent; `None` if none is, or if its
+/// length is unknown. After 100 the mesh is made.
 pub(crate) fn percent_read() -> Option<u64> {
     Some(PERCENT.load(Ordering::Relaxed)).filter(|percent| *percent != UNKNOWN)
 }

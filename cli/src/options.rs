@@ -57,7 +57,7 @@ pub(crate) struct Drawing {
     /// Choose which model axis points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_parser = axis(), hide_short_help = true)]
     up: Option<UpAxis>,
-    /// Keep a model's edges sharp at DEGREES and above
+    /// Keep a model's edges sharp above DEGREES
     ///
     /// For models without normals: 180 makes everything smooth, 0 everything flat.
     ///

@@ -20,7 +20,7 @@ pub(crate) const SCHEMA: u32 = 1;
 /// Held while a file is written, by any number of threads.
 static WRITING: RwLock<()> = RwLock::new(());
 
-/// Held while a file is written that may take long, and is given up when the program is told to end.
+/// Held while a file that may take long is written; it is given up if the program is told to end.
 static WRITING_LONG: Mutex<()> = Mutex::new(());
 
 /// Set once the program has been told to end.
@@ -58,7 +58,7 @@ pub(crate) fn remark(line: impl Display) {
     }
 }
 
-/// Makes Ctrl-C, and other signals to end, wait for the files that are being written: each is then whole under its
+/// Makes Ctrl-C and other termination signals wait for the files being written: each is then whole under its
 /// name, or removed if it takes long, and no temporary file is left behind.
 pub(crate) fn finish_files_when_interrupted() {
     let end = || {

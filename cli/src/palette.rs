@@ -36,7 +36,7 @@ pub(crate) struct Options {
     /// Choose which model axis points up [default: y; z for a flat sheet facing z]
     #[arg(long, value_name = "AXIS", value_parser = options::axis(), requires = "from", conflicts_with = "palette")]
     up: Option<UpAxis>,
-    /// Keep the model's edges sharp at DEGREES and above, if it has no normals
+    /// Keep the model's edges sharp above DEGREES, if it has no normals
     ///
     /// [default: the model's smoothing groups, or else 40; scans are smooth]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true, value_parser = options::crease, requires = "from", conflicts_with = "palette")]

@@ -1,4 +1,4 @@
-//! A pool of as many renderers as work at a time. Each keeps its tables and memory for the next frame.
+//! A pool of renderers, one for each thread at work. Each keeps its tables and memory for the next frame.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -239,7 +239,7 @@ impl Reason {
                 format!("it begins at {start:.3}, the object ends at {farthest:.3}")
             }
             Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
-            Self::NoTexture => "nothing follows the perspective".to_string(),
+            Self::NoTexture => "nothing needs perspective".to_string(),
             Self::NoImage => "no material has a texture".to_string(),
             // Rounded up, because it is a bound.
             Self::TexelsToPixel { texels } => {

@@ -101,7 +101,7 @@ pub(crate) enum Dither {
 }
 
 /// The optional stages, each with the effects that call for it. In a build without those effects
-/// the stage is constantly `false`, so the compiler drops it as well.
+/// the stage is the constant `false`, so the compiler drops it as well.
 macro_rules! switches {
     ($($(#[$doc:meta])* $name:ident: $first:ident $(| $other:ident)*;)+) => {
         /// The stages that an object goes through.

@@ -404,8 +404,8 @@ const fn are_arrays<S: Lanes8>() -> bool {
     align_of::<S::F64>() < 16
 }
 
-/// Returns whether each row is computed and listed by a call: in plain arrays, and for records in narrow vectors, which
-/// would otherwise be spilled.
+/// Returns whether each row is computed and listed out of line: in plain arrays, and for records in narrow vectors,
+/// which would otherwise be spilled.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
@@ -431,7 +431,7 @@ fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
     if const { are_arrays::<S>() } { s.apart(part) } else { part() }
 }
 
-/// Appends spans by a call or inlined, as the level requires.
+/// Appends spans, out of line or inlined, as the level requires.
 #[inline(always)]
 fn append<S: Lanes8, P: Shades8>(s: S, list: &mut SpanList, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {
     if const { is_apart::<S, P>() } {

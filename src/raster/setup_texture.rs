@@ -364,7 +364,7 @@ impl PerspectivePlanes8 {
     /// between two. No coordinate exceeds that difference plus a texel.
     ///
     /// A coordinate that all corners share is moved to the middle of its texel, which is in the same texel of every
-    /// level. Many models give a face one point of an image of colours, often on the border of a texel, where no
+    /// level. Many models give a face one point of a colour atlas, often on the border of a texel, where no
     /// quotient could decide.
     #[inline(always)]
     fn rebase<S: Lanes8>(

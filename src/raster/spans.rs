@@ -321,7 +321,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             if rows > 0 {
                 let (setup, area) = (&mut setup, (layout, clip));
                 let (target, spans) = (&mut *target, (&mut *shades, &mut *list));
-                // By a call, which leaves the registers to small triangles.
+                // Out of line, which leaves the registers to small triangles.
                 s.apart(
                     #[inline(always)]
                     move || list_large::<S, P, DEPTHS>(s, of, (number, i), setup, area, target, spans),

@@ -34,7 +34,7 @@ pub(crate) fn test_span<S: Lanes8>(
     test_blocks(s, (cells, length), [z, dz], keeps, masks)
 }
 
-/// Tests like [`test_span`], eight pixels at a time, by a call: it is compiled once for each level, not in each loop
+/// Tests like [`test_span`], eight pixels at a time, out of line: compiled once for each level, not in each loop
 /// over texels.
 #[inline(always)]
 pub(crate) fn test_blocks<S: Lanes8>(

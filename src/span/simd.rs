@@ -20,7 +20,7 @@ pub(super) mod arrays {
     /// Pixels per iteration: two vectors of shades.
     const BLOCK: usize = 2 * LANES;
     /// The length from which the compiler's own vectors of the portable loop are faster: on x86-64 9.7 ns at 160 pixels
-    /// and 30 here, about the same at 100, and 26 and 15 at random lengths of 1 to 64 pixels.
+    /// against 30 here, the same at 100, and 26 against 15 at random lengths of 1 to 64.
     const LONG: usize = 128;
 
     /// Even and odd shades of a block of 16 pixels.

@@ -137,8 +137,8 @@ impl GifFrame {
 const TRANSPARENT_RUN: usize = 16;
 
 impl Image {
-    /// A part of a frame, compressed as it is and, if there is a frame before it, with transparent pixels; the shorter
-    /// of both.
+    /// A part of a frame, compressed as it is and, if there is a frame before it, with transparent pixels; whichever
+    /// is shorter.
     fn new(
         before: Option<&Scaled<'_>>,
         scaled: &Scaled<'_>,

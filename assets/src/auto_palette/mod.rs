@@ -143,7 +143,7 @@ fn of_round(scene: &Scene, round: &Round<'_>) -> Result<AutomaticPalette, Render
     let seen = seen_in(scene, round)?;
     let mut uses: Vec<Use<'_>> = Vec::new();
     for ((body, seen), texels) in bodies.iter().flatten().zip(seen.iter().flatten()).zip(&texels) {
-        // The shades of an image, or of a ramp that is taken over, are not rescaled.
+        // The shades of an image, or of a ramp that is kept, are not rescaled.
         let part = if body.image.is_some() || body.along.is_some() { body.full } else { 1.0 };
         uses.push(Use {
             color: body.color,
@@ -206,7 +206,7 @@ struct Body {
     full: f32,
     /// Its colours on three channels.
     own: OwnColors,
-    /// The colours of a ramp that is taken over.
+    /// The colours of a ramp that is kept.
     along: Option<Vec<Rgb>>,
     color: Rgb,
     highlight: Option<Rgb>,

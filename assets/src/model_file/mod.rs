@@ -1,4 +1,4 @@
-//! Models from files: all formats share the code from the lists that a reader produces to a mesh.
+//! Models from files: all formats share the code that turns a reader's lists into a mesh.
 //!
 //! | format | module | read |
 //! |---|---|---|

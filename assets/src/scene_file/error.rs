@@ -150,7 +150,7 @@ fn expected_first(message: &str) -> Option<String> {
     let rest = kinds.iter().find_map(|kind| message.strip_prefix(kind))?;
     let at = rest.rfind(", expected ")?;
     let found = &rest[..at];
-    // So serde calls an integer beyond 64 bits.
+    // Serde's name for an integer beyond 64 bits.
     let integer = ["` as i128", "` as u128"].iter().find_map(|behind| between(found, "integer `", behind));
     let found = integer.unwrap_or(found);
     Some(format!("{}, found {found}", &rest[at + 2..]))

@@ -223,7 +223,7 @@ mod others {
         Ok(Decoded { texture, was_transparent, palette: None })
     }
 
-    /// Returns whether a JPEG lacks its end, where the decoder makes the missing pixels grey. Segments are skipped by their
+    /// Returns whether a JPEG is cut off; the decoder makes the missing pixels grey. Segments are skipped by their
     /// length, so a preview inside one does not count, and neither does what follows the end.
     fn is_cut_off(jpeg: &[u8]) -> bool {
         let mut rest = jpeg;

@@ -12,7 +12,7 @@ use super::{Failure, Input, Key, Keys, Panel, Row, Sheet, Show, Side};
 
 pub(super) const KEYS: Keys = &[
     ("C", "Divide the window at the mouse, with another shading on the right; a click fixes the divider"),
-    ("Shift", "With [ ] and digits: the right shading"),
+    ("Shift", "With [ ] and digits: the right-hand shading"),
     ("X", "Swap the two shadings"),
 ];
 

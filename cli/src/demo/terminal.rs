@@ -48,7 +48,7 @@ impl Sending {
 
     /// Shows a stage from the time `seconds` on.
     pub(super) fn run(&self, stage: Turntable, renderer: Renderer, seconds: f64) -> Result<(), Failure> {
-        // A signal to end waits until the terminal is restored.
+        // A termination signal waits until the terminal is restored.
         output::long_file(None, || {
             let protocol = self.to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)));
             let scale = self.scale.unwrap_or_else(scale_that_fits);

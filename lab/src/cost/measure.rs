@@ -41,7 +41,7 @@ pub struct Settings {
     pub claims: bool,
     /// Clock that times are read from.
     pub clock: Clock,
-    /// Roughly how long to take times; up to twice as long while ratios are too uncertain.
+    /// Roughly how long to time; up to twice as long while ratios are too uncertain.
     pub seconds: f64,
     /// True if `seconds` is a hard limit (at least seven rounds).
     pub at_most: bool,
@@ -213,7 +213,7 @@ impl Rows<'_> {
         Ratio::new(&self.times[way], &self.times[to], &mut Random::again(self.seed))
     }
 
-    /// Indices of the configurations that `of` wants to know, and what it says of them.
+    /// Indices of the configurations for which `of` returns something, and what.
     fn each<T>(&self, of: impl Fn(Kind) -> Option<T>) -> impl Iterator<Item = (usize, T)> {
         self.ways.iter().enumerate().filter_map(move |(i, way)| Some((i, of(way.kind)?)))
     }

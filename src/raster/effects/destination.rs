@@ -212,7 +212,7 @@ impl Destination for Masked<'_> {
         (texels, tint, along): (Texels<'_>, T, &mut T::Along<S>),
         mut offsets: impl OffsetsAlong<S>,
     ) {
-        // Only what the test changes is taken over: a copy of the whole moves its padding through memory.
+        // Copies only what the test changes: a copy of the whole would move its padding through memory.
         let DrawnPixels { at, length, mut stays, .. } = pixels;
         if !pixels.is_tested {
             let Some(tested) = self.test(s, spans, i, pixels) else { return };

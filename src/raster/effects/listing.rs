@@ -320,7 +320,7 @@ impl SpanData {
 }
 
 impl ListedFaces<'_> {
-    /// Sets up eight faces by a call, so that the loop over them stays small.
+    /// Sets up eight faces out of line, so that the loop over them stays small.
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
         s.apart(

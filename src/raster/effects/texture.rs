@@ -202,8 +202,8 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Draws the texels of span `i`. `line` returns their coordinates at its first pixel, and the change per pixel: once
-/// pixels turn out to be drawn, so that numbers are broadcast from memory.
+/// Draws the texels of span `i`. `line` returns their coordinates at its first pixel, and the change per pixel; it
+/// is called once pixels turn out to be drawn, so that numbers are broadcast from memory.
 #[inline(always)]
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     (spans, i): (&Spans<'_>, usize),
@@ -319,7 +319,7 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     let (mut first, end, last) = (skipped, skipped + pixels.length, spans.last(i));
     let mut levels = [-1; LANES];
     if HAS_F64 && single.is_none() {
-        // That of 16 pixels is the level of the one in their middle: see `middle`.
+        // Each 16 pixels have the level of the one in their middle: see `middle`.
         let begin = s.shl_i32(s.load_i32(&NUMBERS), 4);
         let k = s.min_i32(s.add_i32(begin, s.splat_i32(self::EVERY / 2)), s.splat_i32(last));
         s.store_i32(spans.levels(s, i, s.max_i32(k, begin), last_level), &mut levels);
@@ -368,7 +368,7 @@ fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     if !IS_COMPACT && let Some(sums) = spans.singles(i) {
         show_in_singles((spans, i, before), pixels, first, (image, offsets, sums), tint, to);
     } else {
-        // A closure that moves, so that nothing that the other loops use has to be in memory.
+        // A `move` closure, so that nothing that the other loops use has to be in memory.
         offsets.s.apart(
             #[inline(always)]
             move || {

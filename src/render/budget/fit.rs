@@ -24,7 +24,7 @@ use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
 /// Least number of pixels for each point of the finer grids that makes them worthwhile. (The spheres of `phong` within
-/// 2 shades take 1.04 of the time of the shading at 10, 0.99 at 5, 0.95 at 3; a failed attempt costs more on a finer
+/// 2 shades take 1.04 of that shading's time at 10, 0.99 at 5, 0.95 at 3; a failed attempt costs more on a finer
 /// grid.)
 const PIXELS_A_POINT: f32 = 4.0;
 

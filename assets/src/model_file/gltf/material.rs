@@ -91,7 +91,7 @@ pub(super) struct Materials<'a> {
     /// Reads a picture beside the file.
     file: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     pub(super) surfaces: Vec<Surface>,
-    /// The painted surface of each that has one: the same material, but with the colours of faces.
+    /// The painted copy of each surface that has one: the same material with the colours of faces.
     pub(super) painted: HashMap<usize, usize>,
     pub(super) textures: Embedded,
     pub(super) left_out: LeftOut,

@@ -73,7 +73,7 @@ fn narrow(v: Wide) -> Vec3 {
     Vec3::from_array(v.map(|c| c as f32))
 }
 
-/// The lights, and for each the index of its source. A light that is nowhere, or whose numbers exceed f32, is left out.
+/// The lights, and for each the index of its source. A light without a place, or whose numbers exceed f32, is left out.
 pub(super) fn lights(
     sources: &[Source],
     stand: impl Fn(usize) -> Option<Stand>,
@@ -129,7 +129,7 @@ fn is_sound(light: &Light) -> bool {
     ranges && light.color().iter().all(|c| c.is_finite()) && light.intensity() > 0.0 && light.intensity().is_finite()
 }
 
-/// Moves a light to where its node is, if that is anywhere.
+/// Moves a light to where its node is, if f32 can hold it.
 pub(super) fn moved(mut light: Light, stand: Stand) -> Light {
     match &mut light {
         Light::Sun { direction, .. } => *direction = stand.axis(2).unwrap_or(*direction),
@@ -144,8 +144,8 @@ pub(super) fn moved(mut light: Light, stand: Stand) -> Light {
     light
 }
 
-/// The camera: it looks at the point in front of it that is as far away as the middle of the model. `None` if it is
-/// nowhere.
+/// The camera: it looks at the point in front of it that is as far away as the middle of the model. `None` if f32
+/// cannot hold it.
 pub(super) fn camera(eye: &Eye, stand: Stand, bounds: &Bounds) -> Option<Camera> {
     let (position, towards, up) = (stand.position()?, stand.place.axis(2)?, stand.axis(1)?);
     let away = sub(widen(position), widen(bounds.centre));
@@ -163,7 +163,7 @@ pub(super) fn camera(eye: &Eye, stand: Stand, bounds: &Bounds) -> Option<Camera>
     is_sound.then_some(Camera { eye: position, target, up, field_of_view, near })
 }
 
-/// Moves the camera to where its node is, if that is anywhere. It looks as far as before.
+/// Moves the camera to where its node is, if f32 can hold it. It looks as far as before.
 pub(super) fn looking(camera: Camera, stand: Stand) -> Camera {
     let (Some(eye), Some(towards), Some(up)) = (stand.position(), stand.place.axis(2), stand.axis(1)) else {
         return camera;

@@ -102,7 +102,7 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
 #[test]
 fn all_that_the_source_texts_describe_is_seen_by_a_command() {
     let mut tried = Tried::new("all_that_the_source_texts_describe_is_seen_by_a_command", 26);
-    let table = SOURCES.split("| see it by").nth(1).expect("a table");
+    let table = SOURCES.split("| see it with").nth(1).expect("a table");
     for row in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
         let command = row.split('`').nth(1).expect("a command");
         // This one takes long, and has tests of its own.

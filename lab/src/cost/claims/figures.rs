@@ -135,7 +135,7 @@ impl Figures {
         let (coarse, fine) = self.ends();
         let measured = format!(
             "A sphere of {} faces with a highlight: against gouraud-8.8, Phong by a table, which normalises nothing, takes \
-             {:.2} times the time; Phong with the normal made unit again and the light worked out {:.2} times. Of {} faces, \
+             {:.2} times the time; Phong with the normal renormalised and light worked out {:.2} times. Of {} faces, \
              where pixels count less, {:.2} and {:.2} times.",
             coarse.triangles,
             coarse.table_to_linear,

@@ -57,7 +57,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R6",
         title: "the order of the corners",
-        sentence: "The same triangle, its corners named in two orders: marked is what changes from one to the other.",
+        sentence: "The same triangle, its corners listed in two orders: the marks show what changes between them.",
         wrong: "edges and shades walked from the first corner on, slopes cut",
         right: "corners sorted first: the same bytes in any order",
         build: triangles::r6,
@@ -81,7 +81,7 @@ pub static CASES: &[Case] = &[
     Case {
         id: "R11",
         title: "moved by whole pixels",
-        sentence: "The same face twice, the second a whole number of pixels further: marked is where it is not the same.",
+        sentence: "The same face twice, the second a whole number of pixels further: the marks show where they differ.",
         wrong: "edges as lines x = m y + b from the frame's corner, m cut to 1/16",
         right: "edges from their own corners, exactly",
         build: triangles::r11,
@@ -169,15 +169,15 @@ pub static CASES: &[Case] = &[
     Case {
         id: "N6",
         title: "the brightness of a rounded corner",
-        sentence: "The corner of this rounded cube points at the light and must be its brightest spot; a mean that is not made unit again darkens it.",
+        sentence: "The corner of this rounded cube points at the light and must be its brightest spot; a mean that is not renormalised darkens it.",
         wrong: "the Hungarian tutorial's mean of normals, 0.58 long at a corner",
-        right: "the sum made unit length again",
+        right: "the sum renormalised",
         build: light::n6,
     },
     Case {
         id: "N8",
         title: "a quad turned on the screen",
-        sentence: "A quad and the same quad turned by 90 degrees: marked is where the shade did not turn with it.",
+        sentence: "A quad and the same quad turned by 90 degrees: marks show where the shade did not turn with it.",
         wrong: "shaded as a quad: along its edges, then along the row",
         right: "split into triangles, which do not care",
         build: shades::n8,
@@ -192,7 +192,7 @@ pub static CASES: &[Case] = &[
     },
     Case {
         id: "D1",
-        title: "faces that overlap in a circle",
+        title: "faces that overlap cyclically",
         sentence: "Each of three bars lies over the next: no order of painting can show that.",
         wrong: "painter's order: the farthest first",
         right: "a depth for every pixel",
