@@ -7,8 +7,7 @@
 #[cfg(feature = "alloc")]
 use glam::Vec3;
 
-use super::pick::{MAX_PIECES, Pick};
-use super::reference::shade::RESEED;
+use super::pick::Pick;
 use super::vertex::Vertex;
 use crate::fixed::{I24F8, U8F8};
 use crate::lanes::{LANES, three};
@@ -256,15 +255,6 @@ impl Triangles<'_> {
     #[inline(always)]
     pub(crate) fn corners(&self, pick: Pick) -> [usize; 3] {
         three(self.indices[pick.index()], |i| i as usize)
-    }
-
-    /// The most reseeded pieces in a row of a triangle that fits the eight-lane set-up.
-    #[inline(always)]
-    pub(crate) fn pieces(&self, pick: Pick) -> usize {
-        let [a, b, c] = three(self.corners(pick), |i| self.columns.at[i].x());
-        // As in `cull`; at most 1,024 pixels.
-        let columns = ((a.max(b).max(c) + 127) >> 8) - ((a.min(b).min(c) + 127) >> 8);
-        ((columns - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
     }
 
     /// The vertices of pick `k`.

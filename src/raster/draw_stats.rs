@@ -28,6 +28,14 @@ pub struct DrawStats {
     pub lit: u32,
 }
 
+impl DrawStats {
+    /// The counts of spans that have been drawn: how many, the pixels covered, and those that were nearer.
+    pub(super) fn of_spans((spans, covered, nearer): (u32, u32, u32), has_depths: bool) -> Self {
+        let (pixels, tested) = if has_depths { (nearer, covered) } else { (covered, 0) };
+        Self { spans, covered, pixels, tested, ..Self::default() }
+    }
+}
+
 impl core::ops::AddAssign for DrawStats {
     /// Counts wrap at 2³²; a frame of 4,096 × 4,096 would have to be filled 256 times over.
     fn add_assign(&mut self, other: Self) {

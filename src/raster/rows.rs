@@ -253,7 +253,11 @@ impl Shades8 for Linear {
         ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> S::I32 {
-        if self.is_flat { lane.load_i32(s, &self.shades) } else { ends.shade(s, lane, setup, parts.seed) }
+        if self.is_flat {
+            lane.load_i32(s, &self.shades)
+        } else {
+            value_of(s, lane, (&setup.shade, &setup.inverse), ends.j, parts.seed)
+        }
     }
 
     #[inline(always)]
@@ -280,23 +284,17 @@ impl<S: Lanes8> RowEnds<S> {
         let short = s.select(s.is_greater(lane.load_i32(s, &setup.split), number), upper, lower);
         Self { left: s.min(long, short), right: s.max(long, short), j }
     }
-
-    /// The numerator of the shade at these columns; see [`ValuePlanes8`].
-    #[inline(always)]
-    pub(super) fn shade_numerator(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::F64 {
-        numerator_at(s, lane, &setup.shade, self.j, columns)
-    }
-
-    /// The shade at these columns, with the step in the upper half.
-    #[inline(always)]
-    pub(super) fn shade(&self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, columns: S::F64) -> S::I32 {
-        value_of(s, lane, (&setup.shade, &setup.inverse), self.j, columns)
-    }
 }
 
 /// A numerator at these columns of rows `j`.
 #[inline(always)]
-fn numerator_at<S: Lanes8>(s: S, lane: impl Lane<S>, planes: &ValuePlanes8, j: S::F64, columns: S::F64) -> S::F64 {
+pub(super) fn numerator_at<S: Lanes8>(
+    s: S,
+    lane: impl Lane<S>,
+    planes: &ValuePlanes8,
+    j: S::F64,
+    columns: S::F64,
+) -> S::F64 {
     let n = s.mul_add(lane.load_f64(s, &planes.per_row), j, lane.load_f64(s, &planes.n));
     s.mul_add(lane.load_f64(s, &planes.per_column), s.sub(columns, s.splat_f64(ROUND_MAGIC)), n)
 }
@@ -415,7 +413,7 @@ const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
 /// either, others decide here.
 #[inline(always)]
 pub(super) fn has_depths<P: Shades8, const DEPTHS: bool>(list: &SpanList) -> bool {
-    DEPTHS && (P::IS_LINEAR || list.has_cells())
+    DEPTHS && (P::IS_LINEAR || list.has_cells)
 }
 
 /// The change of depth of triangle `i`, if spans have depths.

@@ -152,7 +152,7 @@ impl Edges {
 
 /// Planes of a value of 0 to 0xFF00 over eight triangles: `nearest((n + j·per_row + i·per_column) · inverse)` at column
 /// i of row j, the half included, with the inverse of the triangle's set-up.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 #[repr(C, align(64))]
 pub(super) struct ValuePlanes8 {
     pub(super) n: Floats,

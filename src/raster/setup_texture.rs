@@ -50,7 +50,7 @@ pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -
 }
 
 /// Planes of coordinates that are linear on the screen, of eight triangles.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct AffinePlanes8 {
     n: [Floats; 2],
     per_row: [Floats; 2],
@@ -72,20 +72,6 @@ pub(super) struct AffinePlanes8 {
 }
 
 impl AffinePlanes8 {
-    pub(super) const NONE: Self = Self {
-        n: [[0.0; LANES]; 2],
-        per_row: [[0.0; LANES]; 2],
-        per_column: [[0.0; LANES]; 2],
-        inverse: [0.0; LANES],
-        first: [[0; LANES]; 2],
-        is_split: false,
-        whole_per_row: [[0; LANES]; 2],
-        whole_per_column: [[0; LANES]; 2],
-        step: [[0; LANES]; 2],
-        level: [0; LANES],
-        falls: [0; 2],
-    };
-
     /// The difference between two corners' coordinates from which on eight faces are not set up at once.
     const TOO_FAR: i32 = 1 << 22;
 
@@ -285,7 +271,7 @@ fn steps_of_corners<S: Lanes8>(s: S, values: &[[S::F64; 3]; 3], steps: &[Floats;
 
 /// Coordinates that are linear on the face, of eight triangles: planes of u, v and 1, each times the depth and the
 /// area.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct PerspectivePlanes8 {
     /// At the box's first pixel.
     first: [Floats; 3],
@@ -306,17 +292,6 @@ pub(super) struct PerspectivePlanes8 {
 }
 
 impl PerspectivePlanes8 {
-    pub(super) const NONE: Self = Self {
-        first: [[0.0; LANES]; 3],
-        step: [[0.0; LANES]; 3],
-        base: [[0; LANES]; 2],
-        margin: [0; LANES],
-        single_step: [[0.0; LANES]; 3],
-        row_step: [[0.0; LANES]; 3],
-        fits_levels: 0,
-        single_level: [0; LANES],
-    };
-
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(
         &mut self,

@@ -39,7 +39,7 @@ use super::reference::cover::SortedTriangle;
 use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::reference::shade::RESEED;
-use super::rows::{Batches, Lane, Parts, RowEnds, Shades8};
+use super::rows::{Batches, Lane, Parts, RowEnds, Shades8, numerator_at};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, NUMBERS, three};
@@ -397,7 +397,7 @@ impl Shades8 for Shaded8<'_> {
         let ShadedData { steps, numbers, sums: starts, .. } = &mut *self.data;
         let steps = &steps[self.listed.batches.current()];
         if self.kind == Kind::Fixed16 {
-            let n = ends.shade_numerator(s, lane, setup, parts.row);
+            let n = numerator_at(s, lane, &setup.shade, j, parts.row);
             let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));

@@ -22,7 +22,7 @@ use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
-use super::pick::{MAX_WIDTH, Pick, SizeClass};
+use super::pick::{MAX_PIECES, MAX_WIDTH, Pick, SizeClass};
 use super::reference::cover::SortedTriangle;
 use super::reference::depth::DepthPlane;
 use super::reference::shade::{RESEED, ShadePlane};
@@ -32,8 +32,8 @@ use super::setup::{Corners8, FrameLayout, TriangleSetup8};
 use super::shaded::{Kind, Shaded8, ShadedData};
 use super::triangle::Raster;
 use super::vertex::Vertex;
-use crate::fixed::HAS_F64;
-use crate::lanes::LANES;
+use crate::fixed::{HAS_F64, I24F8};
+use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::{SpanList, Target};
 
@@ -47,17 +47,15 @@ pub(super) struct Drawn<'a> {
 }
 
 impl Drawn<'_> {
-    fn depth_plane(&self, k: usize) -> DepthPlane {
-        DepthPlane::new(&SortedTriangle::new(&self.triangles.vertices(&self.picks, k)))
-    }
-
     /// The most pieces of a row of a large triangle.
     #[inline(always)]
     fn pieces(&self, pick: Pick) -> usize {
         if !self.in_pieces {
             return 1;
         }
-        self.triangles.pieces(pick)
+        let [a, b, c] = three(self.triangles.corners(pick), |i| self.triangles.columns.at[i].x());
+        let [left, right] = [a.min(b).min(c), a.max(b).max(c)].map(|x| I24F8::from_bits(x).first_centre());
+        ((right - left - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
     }
 }
 
@@ -84,9 +82,7 @@ impl<D: Cell> Raster<'_, D> {
         shaded: Option<&mut ShadedData>,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
-        let (_, pitch) = self.frame.pixels_mut();
-        let (width, rows) = (self.frame.width(), self.frame.rows());
-        let fits = self.fits_lists();
+        let (layout, fits) = (self.layout(), self.fits_lists());
         let are_flat = !picks.flat.is_empty();
         let kind = Kind::of(interpolation).filter(|_| !are_flat);
         let in_pieces = match interpolation {
@@ -101,8 +97,6 @@ impl<D: Cell> Raster<'_, D> {
             }
         };
         let level = self.kernel.simd_level();
-        let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
-        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width, depth_base };
         let (mut first, count) = (0, picks.picks.len());
         let mut shaded = shaded;
         while first < count {
@@ -116,11 +110,8 @@ impl<D: Cell> Raster<'_, D> {
                 first += 1;
                 continue;
             }
-            let (pixels, _) = self.frame.pixels_mut();
-            // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
-            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-            let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel };
             let area = (layout, self.clip);
+            let target = &mut self.target();
             let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
             drawn += match kind {
                 Some(kind) => match &mut shaded {
@@ -146,19 +137,15 @@ impl<D: Cell> Raster<'_, D> {
         layout: FrameLayout,
         list: &mut SpanList,
     ) -> DrawStats {
-        let (width, clip, kernel) = (self.frame.width(), self.clip, self.kernel);
+        let (width, clip) = (self.frame.width(), self.clip);
         let triangle = SortedTriangle::new(vertices);
         if triangle.extent(clip).is_none() {
             return DrawStats::default();
         }
         let shade = ShadePlane::of_values(&triangle, triangle.shades());
-        // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
-        let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
-        let plane = depth.as_ref().map(|depth| DepthPlane::new(&triangle).raised_by(depth.base));
-        let (pixels, _) = self.frame.pixels_mut();
-        let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
-        let of_pixels = (target.pixels.len(), layout.pitch);
-        list.begin(of_pixels, target.cells.as_ref().map(|cells| (cells.len(), layout.width)));
+        let target = &mut self.target();
+        let plane = target.cells.is_some().then(|| DepthPlane::new(&triangle).raised_by(layout.depth_base));
+        list.begin(target, [layout.pitch, layout.width]);
         triangle.rows(width, clip, |row| {
             // A row of the frame.
             let down = (row.y as u32 - layout.first_row) as usize;
@@ -173,9 +160,23 @@ impl<D: Cell> Raster<'_, D> {
             });
         });
         list.draw(target);
-        let (spans, covered, nearer) = list.counts();
-        let (pixels, tested) = if plane.is_some() { (nearer, covered) } else { (covered, 0) };
-        DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
+        DrawStats::of_spans(list.counts(), plane.is_some())
+    }
+
+    /// The layout of the frame's pixels.
+    pub(super) fn layout(&mut self) -> FrameLayout {
+        let (_, pitch) = self.frame.pixels_mut();
+        let (width, first_row) = (self.frame.width(), self.frame.rows().start);
+        let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
+        FrameLayout { first_row, pitch: pitch as u32, width, depth_base }
+    }
+
+    /// The pixels, the cells of the depth buffer, and the kernel that draws.
+    pub(super) fn target(&mut self) -> Target<'_> {
+        // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
+        let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
+        let (pixels, _) = self.frame.pixels_mut();
+        Target { pixels, cells: depth.map(DepthBuffer::cells), kernel: self.kernel }
     }
 
     /// Returns whether lists can hold the positions of spans: offsets of pixels have 32 bits, and a depth buffer must
@@ -273,8 +274,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     if !HAS_F64 {
         return DrawStats::default();
     }
-    let of_pixels = (target.pixels.len(), layout.pitch);
-    list.begin(of_pixels, target.cells.as_ref().map(|cells| (cells.len(), layout.width)));
+    list.begin(target, [layout.pitch, layout.width]);
     let has_depths = rows::has_depths::<P, DEPTHS>(list);
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
@@ -330,9 +330,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         }
     }
     shades.draw::<S, DEPTHS>(s, list, target);
-    let (spans, covered, nearer) = list.counts();
-    let (pixels, tested) = if has_depths { (nearer, covered) } else { (covered, 0) };
-    DrawStats { spans, covered, pixels, tested, ..DrawStats::default() }
+    DrawStats::of_spans(list.counts(), has_depths)
 }
 
 /// Lists the rows of triangle `i` of batch `number`, which is not a small one.
@@ -349,7 +347,8 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let k = number * LANES + i;
     let pick = Pick(of.picks.picks[k]);
     if rows::has_depths::<P, DEPTHS>(list) {
-        setup.put_depth_plane(i, &of.depth_plane(k).raised_by(layout.depth_base));
+        let plane = DepthPlane::new(&SortedTriangle::new(&of.triangles.vertices(&of.picks, k)));
+        setup.put_depth_plane(i, &plane.raised_by(layout.depth_base));
     }
     shades.set_up_large(i);
     let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);

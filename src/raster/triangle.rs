@@ -110,12 +110,6 @@ impl<'a, D: Cell> Raster<'a, D> {
         self.clip
     }
 
-    /// The kernel that draws.
-    #[cfg(feature = "alloc")]
-    pub(crate) fn kernel(&self) -> Kernel {
-        self.kernel
-    }
-
     /// The frame that is drawn into.
     pub fn frame(&mut self) -> Frame<'_> {
         self.frame.reborrow()

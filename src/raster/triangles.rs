@@ -100,13 +100,9 @@ impl<'t, const N: usize> Pending<'t, N> {
     fn copy(&mut self, pick: Pick, to: usize, with_depth: bool) {
         let (vertices, interpolation) = self.triangles[pick.index() % N];
         put_positions(&mut self.at, to, vertices);
-        let shades = match interpolation {
-            Interpolation::Flat(index) => [U8F8::from(index); 3],
-            _ => three([0, 1, 2], |corner: usize| vertices[corner].shade()),
-        };
-        for (corner, shade) in shades.into_iter().enumerate() {
+        for (corner, vertex) in vertices.iter().enumerate() {
             // All are seen from the front.
-            self.shade[corner][to % N][0] = shade;
+            self.shade[corner][to % N][0] = corner_shade(vertex, interpolation);
         }
         if with_depth {
             for (corner, vertex) in vertices.iter().enumerate() {

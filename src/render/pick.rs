@@ -129,9 +129,7 @@ impl<'a> Picker<'a> {
 
     /// Culls up to 64 triangles. `exact_cover` is false if those that cover no pixel centre may draw something.
     fn cull(&self, at: &[ScreenPos], triangles: &[[u32; 3]], culls: bool, exact_cover: bool) -> CullMasks {
-        // A rectangle that covers no pixel.
-        const NOWHERE: Rect = Rect { x0: 0, y0: 0, x1: 0, y1: 0 };
-        let masks = cull(self.kernel.simd_level(), at, triangles, self.clip.unwrap_or(NOWHERE), culls);
+        let masks = cull(self.kernel.simd_level(), at, triangles, self.clip.unwrap_or_default(), culls);
         if self.clip.is_some() && exact_cover { masks } else { CullMasks { covers: !0, ..masks } }
     }
 

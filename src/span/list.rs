@@ -57,7 +57,7 @@ pub(crate) struct SpanList {
     /// True if that is the same for both, so that pixels and their cells have the same offset.
     cells_are_pixels: bool,
     /// True if there are cells.
-    has_cells: bool,
+    pub(crate) has_cells: bool,
     /// Pixels of all spans so far, as eight partial sums.
     covered: Sums,
     /// Spans that have been drawn.
@@ -90,11 +90,8 @@ impl<S: Lanes8> Spans8<S> {
     #[inline(always)]
     pub(crate) fn zip(&self, s: S, other: &Self, list: &SpanList, has_depths: bool) -> [Self; 2] {
         let [at, more_at] = s.interleave_i32(self.at, other.at);
-        let [cell, more_cell] = if has_depths && !list.cells_are_pixels() {
-            s.interleave_i32(self.cell, other.cell)
-        } else {
-            [at, more_at]
-        };
+        let [cell, more_cell] =
+            if has_depths && !list.cells_are_pixels { s.interleave_i32(self.cell, other.cell) } else { [at, more_at] };
         let [length, more_length] = s.interleave_i32(self.length, other.length);
         let [fill, more_fill] = s.interleave_i32(self.fill, other.fill);
         let [z, more_z] = if has_depths { s.interleave_i64(self.z, other.z) } else { [self.z, other.z] };
@@ -134,24 +131,18 @@ impl SpanList {
         }
     };
 
-    /// An empty list for this number of pixels, and of cells if there are any, each with its pitch.
+    /// Empties the list, for the pixels and cells of a target, each with its pitch, and resets its counts.
     #[inline(always)]
-    pub(crate) fn new(pixels: (usize, u32), cells: Option<(usize, u32)>) -> Self {
-        let mut list = Self::NONE;
-        list.begin(pixels, cells);
-        list
-    }
-
-    /// Empties the list, for other pixels and cells if there are any, and resets its counts.
-    #[inline(always)]
-    pub(crate) fn begin(&mut self, (pixels, pitch): (usize, u32), cells: Option<(usize, u32)>) {
-        let (cell_count, width) = cells.unwrap_or((pixels, pitch));
+    pub(crate) fn begin(&mut self, target: &Target<'_>, [pitch, width]: [u32; 2]) {
         // No frame has offsets beyond that.
         let most = |length: usize| length.min(i32::MAX as usize) as i32;
-        (self.pixels, self.pitch) = (most(pixels), pitch as i32);
-        (self.cells, self.width) = (most(cell_count), width as i32);
-        self.has_cells = cells.is_some();
-        self.cells_are_pixels = pitch == width;
+        (self.pixels, self.pitch) = (most(target.pixels.len()), pitch as i32);
+        self.has_cells = target.cells.is_some();
+        (self.cells, self.width) = match &target.cells {
+            Some(cells) => (most(cells.len()), width as i32),
+            None => (self.pixels, self.pitch),
+        };
+        self.cells_are_pixels = self.pitch == self.width;
         if self.cells_are_pixels {
             self.pixels = self.pixels.min(self.cells);
         }
@@ -169,19 +160,6 @@ impl SpanList {
         self.count + spans <= CAPACITY
     }
 
-    /// Returns whether there are cells, so that spans need depths.
-    #[inline(always)]
-    pub(crate) fn has_cells(&self) -> bool {
-        self.has_cells
-    }
-
-    /// Returns whether rows of pixels and of cells have the same length, so that pixels and their cells have the same
-    /// offset.
-    #[inline(always)]
-    fn cells_are_pixels(&self) -> bool {
-        self.cells_are_pixels
-    }
-
     /// The mask of those of these eight spans that have a length and lie inside.
     #[inline(always)]
     fn inside<S: Lanes8>(&self, s: S, spans: &Spans8<S>, has_depths: bool) -> S::Mask {
@@ -190,7 +168,7 @@ impl SpanList {
         let end = s.add_i32(spans.at, spans.length);
         let mut sign = s.or_i32(s.sub_i32(spans.length, s.splat_i32(1)), s.or_i32(spans.at, end));
         sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.pixels), end));
-        if has_depths && !self.cells_are_pixels() {
+        if has_depths && !self.cells_are_pixels {
             let end = s.add_i32(spans.cell, spans.length);
             sign = s.or_i32(sign, s.or_i32(spans.cell, end));
             sign = s.or_i32(sign, s.sub_i32(s.splat_i32(self.cells), end));
@@ -213,7 +191,7 @@ impl SpanList {
             [eight(&mut self.at, count), eight(&mut self.length, count), eight(&mut self.fill, count)],
         );
         if let Some(dz) = dz {
-            if !self.cells_are_pixels() {
+            if !self.cells_are_pixels {
                 s.compress_i32(mask, [cell], [eight(&mut self.cell, count)]);
             }
             match dz {
@@ -318,7 +296,7 @@ impl SpanList {
     /// The depths of all spans, for loops.
     #[inline(always)]
     pub(crate) fn depths(&self) -> SpanDepths<'_> {
-        let cell = if self.cells_are_pixels() { &self.at } else { &self.cell };
+        let cell = if self.cells_are_pixels { &self.at } else { &self.cell };
         SpanDepths { cell, z: &self.z, dz: &self.dz }
     }
 

@@ -32,8 +32,8 @@ pub struct ListedDepths {
 
 /// Draws spans in order, as batches do with this kernel, if they lie inside the pixels.
 pub fn fill(kernel: Kernel, pixels: &mut [u8], spans: &[ListedSpan]) {
-    let mut list = SpanList::new((pixels.len(), 0), None);
-    let target = &mut Target { pixels, cells: None, kernel };
+    let (mut list, target) = (SpanList::NONE, &mut Target { pixels, cells: None, kernel });
+    list.begin(target, [0; 2]);
     for eight in spans.chunks(LANES) {
         list.append(Portable, &lanes(eight), None);
         if !list.has_room(LANES) {
@@ -54,8 +54,8 @@ pub fn fill_where_nearer<D: Cell>(
 ) -> u32 {
     // With one pitch, or with two, so that cells have offsets of their own.
     let is_shared = spans.iter().zip(depths).all(|(span, depths)| span.at == depths.at);
-    let mut list = SpanList::new((pixels.len(), 0), Some((cells.len(), u32::from(!is_shared))));
-    let target = &mut Target { pixels, cells: Some(D::cells(cells)), kernel };
+    let (mut list, target) = (SpanList::NONE, &mut Target { pixels, cells: Some(D::cells(cells)), kernel });
+    list.begin(target, [0, u32::from(!is_shared)]);
     for (spans, depths) in spans.chunks(LANES).zip(depths.chunks(LANES)) {
         let mut eight = lanes(spans);
         let mut dz = [0; LANES];

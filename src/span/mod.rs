@@ -244,7 +244,7 @@ impl Kernel {
     fn fill_spans_nearer(self, pixels: &mut [u8], cells: &mut Cells<'_>, spans: &list::SpanList) -> u32 {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Cells::U32(cells)) = (self.avx2(), &mut *cells) {
-            return match self.avx512() {
+            return match self.level.avx512() {
                 Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans),
                 None => simd::nearer::fill_spans(avx2, pixels, cells, spans),
             };
@@ -267,7 +267,7 @@ impl Kernel {
     ) -> u32 {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
-            return match self.avx512() {
+            return match self.level.avx512() {
                 Some(avx512) => simd::avx512::fill_spans_16_16(avx512, pixels, cells, spans, shades),
                 None => simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades),
             };
@@ -323,13 +323,6 @@ impl Kernel {
     #[inline]
     pub(crate) fn avx2(self) -> Option<Avx2> {
         self.level.avx2()
-    }
-
-    /// The proof that the processor has AVX-512, if this kernel may use it.
-    #[cfg(simd_x86_64)]
-    #[inline]
-    pub(crate) fn avx512(self) -> Option<Avx512> {
-        self.level.avx512()
     }
 }
 

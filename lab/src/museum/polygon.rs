@@ -302,7 +302,7 @@ impl RowShade {
     /// plus half a shade.
     fn start(&self, x: i32) -> u16 {
         let along = self.change * (i64::from(x) * 256 + 128 - self.left_x);
-        let rounded = if self.change < 0 { self.width.ceil(along) } else { self.width.floor(along) };
+        let rounded = if self.change < 0 { -self.width.floor(-along) } else { self.width.floor(along) };
         // From 0 to 0xFF00, by cover.
         (self.left_shade + rounded + 128) as u16
     }

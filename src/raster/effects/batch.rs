@@ -25,8 +25,8 @@ const CAPACITY: usize = CHUNK;
 #[derive(Clone, Debug, Default)]
 pub struct EffectBatch {
     faces: Vec<EffectFace>,
-    /// Empty before the first drawing.
-    columns: Vec<CornerColumns>,
+    /// Allocated by the first drawing.
+    columns: Option<Box<CornerColumns>>,
     sieve: Sieve,
     scratch: EffectScratch,
 }
@@ -68,17 +68,17 @@ impl CornerColumns {
 
     /// Copies the values of a face that the pipeline uses. The face becomes number `to` of those that are drawn.
     #[inline(always)]
-    fn copy(&mut self, (vertices, attributes): &EffectFace, to: usize, uses: Uses) {
+    fn copy(&mut self, (vertices, attributes): &EffectFace, to: usize, [uses_texture, uses_others]: [bool; 2]) {
         put_positions(&mut self.at, to, vertices);
         let i = to % CAPACITY;
         for (k, (vertex, of)) in vertices.iter().zip(attributes).enumerate() {
             self.depth[k][i] = vertex.depth();
             // All are seen from the front.
             self.shade[k][i][0] = vertex.shade();
-            if uses.texture {
+            if uses_texture {
                 self.texture[k][i] = of.texture;
             }
-            if uses.others {
+            if uses_others {
                 self.fog[k][i] = in_range(of.fog);
                 self.channels[k][i][0] = of.channels.map(in_range);
                 self.slope[k][i] = of.slope.map(in_range);
@@ -91,21 +91,6 @@ impl CornerColumns {
 /// The value, or the greatest that the loops over pixels allow.
 fn in_range(value: U8F8) -> U8F8 {
     value.min(U8F8::MAX_VERTEX)
-}
-
-/// The values of corners that a pipeline uses besides shade and depth.
-#[derive(Clone, Copy)]
-struct Uses {
-    texture: bool,
-    others: bool,
-}
-
-impl Uses {
-    fn of(pipeline: &PixelPipeline<'_>) -> Self {
-        let is_plain = matches!(pipeline.source, ShadeSource::Shaded(_));
-        let others = !is_plain || pipeline.fog.is_some() || pipeline.channels.is_some();
-        Self { texture: pipeline.texture.is_some(), others }
-    }
 }
 
 impl EffectBatch {
@@ -172,11 +157,11 @@ impl<D: Cell> Raster<'_, D> {
     ) -> DrawStats {
         let EffectBatch { columns, sieve, scratch, .. } = batch;
         let mut drawn = DrawStats::default();
-        if columns.is_empty() {
-            columns.push(CornerColumns::NONE);
-        }
-        let Some(columns) = columns.first_mut() else { return drawn };
-        let (level, uses) = (self.kernel().simd_level(), Uses::of(pipeline));
+        let columns = columns.get_or_insert_with(|| Box::new(CornerColumns::NONE));
+        let level = self.kernel.simd_level();
+        let is_plain = matches!(pipeline.source, ShadeSource::Shaded(_));
+        let uses_others = !is_plain || pipeline.fog.is_some() || pipeline.channels.is_some();
+        let uses = [pipeline.texture.is_some(), uses_others];
         let mut left = faces;
         while !left.is_empty() {
             let (mut count, mut seen, mut chosen) = (0, 0, [&left[0]; CAPACITY]);
@@ -198,7 +183,7 @@ impl<D: Cell> Raster<'_, D> {
                 columns.copy(chosen[Pick(*pick).index() % CAPACITY], to, uses);
                 *pick = Pick(*pick).with_index(to).0;
             }
-            let CornerColumns { at, depth, shade, texture, fog, channels, slope, lit, .. } = &*columns;
+            let CornerColumns { at, depth, shade, texture, fog, channels, slope, lit, .. } = &**columns;
             let effects = EffectColumns {
                 texture: texture.as_flattened(),
                 fog: fog.as_flattened(),

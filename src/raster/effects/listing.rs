@@ -39,13 +39,13 @@ use crate::span::texture::Levels;
 /// | 6 to 12, 16 to 31 | the index of the span in its row | the row, from the planes' first pixel |
 /// | 13 to 31 | the row's last pixel inside the frame, from the first one of the span | |
 #[derive(Clone, Copy)]
-pub(super) struct Mark([u32; 2]);
+pub(super) struct Mark(pub(super) [u32; 2]);
 
 impl Mark {
-    fn new(face: u32, [number, last]: [i32; 2], [column, row]: [i32; 2]) -> Self {
+    /// A span of the only face.
+    fn of_walked([number, last]: [i32; 2], [column, row]: [i32; 2]) -> Self {
         // The numbers are below 128 and 8,192, column and row below 65,536.
-        let position = column.cast_unsigned() | row.cast_unsigned() << 16;
-        Self([face | (number << 6 | last << 13).cast_unsigned(), position])
+        Self([number << 6 | last << 13, column | row << 16].map(i32::cast_unsigned))
     }
 
     #[inline(always)]
@@ -90,39 +90,23 @@ pub(super) struct Faces<'a> {
 impl<'a> Faces<'a> {
     /// Face `k`, and its corners' values.
     fn corners(&self, k: usize) -> FaceCorners<'a> {
-        self.corners_of(self.sorted(k))
-    }
-
-    fn corners_of(&self, face: SortedFace) -> FaceCorners<'a> {
-        FaceCorners { triangle: face.triangle, face, columns: &self.triangles.columns.effects }
-    }
-
-    /// Face `k` with its corners sorted by height, and the indices of its vertices.
-    #[inline]
-    pub(super) fn sorted(&self, k: usize) -> SortedFace {
         let pick = self.picks.get(k);
         let (triangle, order) = SortedTriangle::with_order(&self.triangles.vertices(&self.picks, k));
         let of = self.triangles.corners(pick);
-        let flat = self.picks.flat.get(k).copied();
-        SortedFace { triangle, corners: three(order, |corner| of[corner]), side: pick.side(), flat }
+        let (corners, flat) = (three(order, |corner| of[corner]), self.picks.flat.get(k).copied());
+        FaceCorners { triangle, corners, side: pick.side(), flat, columns: &self.triangles.columns.effects }
     }
 }
 
-/// A face with its corners sorted by height.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct SortedFace {
-    triangle: SortedTriangle,
+/// A face, and the values of its corners from top to bottom.
+#[derive(Clone, Copy)]
+pub(super) struct FaceCorners<'a> {
+    pub(super) triangle: SortedTriangle,
     /// Indices of its vertices.
     corners: [usize; 3],
     side: usize,
     /// The channels, if all corners share them.
     flat: Option<[U8F8; 3]>,
-}
-
-/// A face, and the values of its corners from top to bottom.
-pub(super) struct FaceCorners<'a> {
-    pub(super) triangle: SortedTriangle,
-    face: SortedFace,
     columns: &'a EffectColumns<'a>,
 }
 
@@ -130,7 +114,7 @@ impl FaceCorners<'_> {
     /// Texture coordinates: `i` is 0 for u, 1 for v.
     #[inline]
     pub(super) fn texture(&self, i: usize) -> [i32; 3] {
-        three(self.face.corners, |vertex| self.columns.texture[vertex][i])
+        three(self.corners, |vertex| self.columns.texture[vertex][i])
     }
 
     /// Texture coordinates linear on the screen, and the level of the face if the image has levels up to this one.
@@ -160,21 +144,21 @@ impl FaceCorners<'_> {
     /// A linear value.
     #[inline]
     pub(super) fn value(&self, value: Value) -> [i64; 3] {
-        if let (Value::Channel(i), Some(flat)) = (value, self.face.flat) {
+        if let (Value::Channel(i), Some(flat)) = (value, self.flat) {
             return [i64::from(flat[i].to_bits()); 3];
         }
-        three(self.face.corners, |vertex| i64::from(self.columns.value(value, vertex, self.face.side)))
+        three(self.corners, |vertex| i64::from(self.columns.value(value, vertex, self.side)))
     }
 
     /// The input of light, or the shades of a curve.
     #[inline]
     pub(super) fn lit(&self) -> [[f32; 6]; 3] {
-        three(self.face.corners, |vertex| self.columns.lit.get(vertex, self.face.side))
+        three(self.corners, |vertex| self.columns.lit.get(vertex, self.side))
     }
 }
 
 /// Planes of eight faces.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct FacePlanes8 {
     /// The first pixel of the box.
     pub(super) column: Ints,
@@ -184,21 +168,11 @@ pub(super) struct FacePlanes8 {
     pub(super) perspective: PerspectivePlanes8,
 }
 
-impl FacePlanes8 {
-    const NONE: Self = Self {
-        column: [0; LANES],
-        row: [0; LANES],
-        values: [ValuePlanes8::NONE; Value::MAX_COUNT],
-        affine: AffinePlanes8::NONE,
-        perspective: PerspectivePlanes8::NONE,
-    };
-}
-
 /// The data of listed spans and of their faces: reused memory.
 #[derive(Clone, Debug)]
 pub(super) struct SpanData {
-    numbers: SpanNumbers<NUMBERS>,
-    coordinates: SpanNumbers<COORDINATES>,
+    pub(super) numbers: SpanNumbers<NUMBERS>,
+    pub(super) coordinates: SpanNumbers<COORDINATES>,
     sums: SpanSums<SUMS>,
     planes: [FacePlanes8; Batches::COUNT],
 }
@@ -243,8 +217,8 @@ impl Wanted {
 }
 
 /// A face whose edges are walked row by row, because it is too large for set-up in f64, or there is no f64.
-pub(super) struct WalkedFace {
-    pub(super) face: SortedFace,
+pub(super) struct WalkedFace<'a> {
+    face: FaceCorners<'a>,
     shade: ShadePlane,
     depth: DepthPlane,
     values: [Option<ShadePlane>; Value::MAX_COUNT],
@@ -266,30 +240,15 @@ pub(super) struct ListedFaces<'a> {
     pub(super) data: &'a mut SpanData,
     pub(super) batches: Batches,
     /// The only face, if its edges are walked.
-    pub(super) walked: Option<WalkedFace>,
+    pub(super) walked: Option<WalkedFace<'a>>,
     /// How one loop per span draws the pixels, where possible.
     pub(super) direct: Option<Direct<'a>>,
 }
 
 impl SpanData {
-    pub(super) const NONE: Self = Self {
-        numbers: SpanNumbers::NONE,
-        coordinates: SpanNumbers::NONE,
-        sums: SpanSums::NONE,
-        planes: [FacePlanes8::NONE; Batches::COUNT],
-    };
-
-    /// The mark of the span with this record.
-    #[inline(always)]
-    pub(super) fn mark(&self, record: usize) -> Mark {
-        Mark([self.numbers.of(record, 0), self.numbers.of(record, 1)])
-    }
-
-    /// u and v at the first pixel of a span, and their change per pixel, where the texture is linear on the screen.
-    #[inline(always)]
-    pub(super) fn affine(&self, record: usize) -> [[u32; 2]; 2] {
-        let of = |i: usize| self.coordinates.of(record, i);
-        [[of(0), of(1)], [of(2), of(3)]]
+    pub(super) fn new() -> Self {
+        let (numbers, coordinates, sums) = (SpanNumbers::NONE, SpanNumbers::NONE, SpanSums::NONE);
+        Self { numbers, coordinates, sums, planes: <[FacePlanes8; Batches::COUNT]>::default() }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
@@ -297,18 +256,6 @@ impl SpanData {
     pub(super) fn sums(&self, record: usize) -> [f64; SUMS] {
         let [u, v, d] = self.sums.of(record);
         [f64::from_bits(u.cast_unsigned()), f64::from_bits(v.cast_unsigned()), f64::from_bits(d.cast_unsigned())]
-    }
-
-    /// The shade at the first pixel of a span, with the step in the upper half.
-    #[inline(always)]
-    pub(super) fn shade(&self, record: usize) -> u32 {
-        self.numbers.of(record, 2)
-    }
-
-    /// The linear value in this slot at the first pixel of a span, with the step in the upper half.
-    #[inline(always)]
-    pub(super) fn value(&self, record: usize, slot: usize) -> u32 {
-        self.numbers.of(record, 3 + slot)
     }
 
     /// The planes of a face's batch, and the face's lane.
@@ -320,18 +267,6 @@ impl SpanData {
 }
 
 impl ListedFaces<'_> {
-    /// Sets up eight faces out of line, so that the loop over them stays small.
-    #[inline(always)]
-    fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
-        s.apart(
-            #[inline(always)]
-            move || {
-                let basis = setup.set_up(s, corners, of, self.wanted.shade);
-                self.set_up_planes(s, &basis, corners, setup);
-            },
-        );
-    }
-
     #[inline(always)]
     fn set_up_planes<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
         let Self { faces, wanted, data, batches, .. } = self;
@@ -378,7 +313,7 @@ impl ListedFaces<'_> {
     #[inline]
     pub(super) fn corners(&self, face: usize) -> FaceCorners<'_> {
         match &self.walked {
-            Some(WalkedFace { face, .. }) => self.faces.corners_of(*face),
+            Some(WalkedFace { face, .. }) => *face,
             None => self.faces.corners(self.batches.first + face),
         }
     }
@@ -450,7 +385,7 @@ impl<'a> EffectSpans<'a> {
             }
         });
         self.listed.walked = Some(WalkedFace {
-            face: corners.face,
+            face: corners,
             shade: ShadePlane::of_values(&triangle, triangle.shades()),
             depth: DepthPlane::new(&triangle).raised_by(depth_base),
             values: self.listed.wanted.values.map(|value| {
@@ -489,7 +424,7 @@ impl<'a> EffectSpans<'a> {
             let fill = record as u32 | ((x - seed) as u32) << 8;
             if list.push(at, (end - x) as usize, fill, [z << 8, depth.step() << 8]) {
                 let number = (seed - row.origin) / RESEED;
-                let mark = Mark::new(0, [number, row.last - seed], [seed, row.y]);
+                let mark = Mark::of_walked([number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
                 self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3]);
                 match texture {
@@ -520,7 +455,15 @@ impl Shades8 for EffectSpans<'_> {
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
-        self.listed.set_up(s, corners, setup, of);
+        let listed = &mut self.listed;
+        // Out of line, so that the loop over faces stays small.
+        s.apart(
+            #[inline(always)]
+            move || {
+                let basis = setup.set_up(s, corners, of, listed.wanted.shade);
+                listed.set_up_planes(s, &basis, corners, setup);
+            },
+        );
     }
 
     #[inline(always)]

@@ -16,22 +16,14 @@ use crate::span::lit::{self, Numerators};
 const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.
-pub(super) trait Lit<const N: usize> {
-    fn at(&self, points: &Points) -> [Lanes<u16>; N];
-}
-
-impl Lit<1> for &dyn PixelLighting {
-    #[inline]
-    fn at(&self, points: &Points) -> [Lanes<u16>; 1] {
-        [self.shades(points)]
+#[inline]
+fn lit<const N: usize>(light: &dyn PixelLighting, points: &Points) -> [Lanes<u16>; N] {
+    let mut lit = [[0; LANES]; N];
+    match lit.as_mut_slice() {
+        [shades] => *shades = light.shades(points),
+        channels => channels.copy_from_slice(&light.channels(points)),
     }
-}
-
-impl Lit<3> for &dyn PixelLighting {
-    #[inline]
-    fn at(&self, points: &Points) -> [Lanes<u16>; 3] {
-        self.channels(points)
-    }
+    lit
 }
 
 /// Normals and positions over a triangle.
@@ -115,12 +107,12 @@ impl Pending {
 
     /// Lights the first eight.
     #[inline(always)]
-    fn light<const N: usize>(&mut self, light: &impl Lit<N>, out: &mut [&mut [u16]; N]) {
+    fn light<const N: usize>(&mut self, light: &dyn PixelLighting, out: &mut [&mut [u16]; N]) {
         let mut numerators = [[0.0; LANES]; 7];
         for (i, eight) in numerators.iter_mut().enumerate() {
             *eight = each!(lane => self.numerators[i][lane]);
         }
-        let lit = light.at(&lit::divide(&numerators));
+        let lit: [_; N] = lit(light, &lit::divide(&numerators));
         for (lane, &pixel) in self.indices[..self.count.min(LANES)].iter().enumerate() {
             for (i, out) in out.iter_mut().enumerate() {
                 out[pixel] = lit[i][lane];
@@ -149,23 +141,23 @@ impl Spans<'_> {
     pub(super) fn light_some<const N: usize>(
         &self,
         kernel: Kernel,
-        (spacing, light): (SampleSpacing, &impl Lit<N>),
+        (spacing, light): (SampleSpacing, &dyn PixelLighting),
         thresholds: Thresholds,
         mut out: [&mut [u8]; N],
     ) {
         let mut nothing = [(); ROOM];
         self.each(&mut nothing, LitPlane::new, |plane, span, _| {
             let knots = Knots::new(span, spacing);
-            let mut lit = [[0; KNOTS]; N];
+            let mut at_knots = [[0; KNOTS]; N];
             knots.light(plane, span, kernel, |first, points| {
-                let shades = light.at(points);
-                for (i, lit) in lit.iter_mut().enumerate() {
+                let shades: [_; N] = lit(light, points);
+                for (i, lit) in at_knots.iter_mut().enumerate() {
                     if let Some(to) = lit[first..].first_chunk_mut() {
                         *to = shades[i];
                     }
                 }
             });
-            for (lit, out) in lit.iter().zip(&mut out) {
+            for (lit, out) in at_knots.iter().zip(&mut out) {
                 knots.fill(lit, span.thresholds(thresholds), span.column(), &mut out[span.pixels()]);
             }
         });
@@ -177,10 +169,10 @@ compiled_for_each_level! {
     /// triangles. A pixel's point is computed from its own row's first pixel, so its shade does not depend on the other
     /// seven.
     #[inline(never)]
-    pub(super) fn light_each[const N: usize, L: Lit<N>][N, L](
+    pub(super) fn light_each[const N: usize][N](
         kernel: Kernel,
         spans: &Spans<'_>,
-        light: &L,
+        light: &dyn PixelLighting,
         out: [&mut [u16]; N],
     ) {
         light_each_inlined(spans, light, out)
@@ -188,7 +180,7 @@ compiled_for_each_level! {
 }
 
 #[inline(always)]
-fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mut out: [&mut [u16]; N]) {
+fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &dyn PixelLighting, mut out: [&mut [u16]; N]) {
     let mut pending = Pending::new();
     let mut nothing = [(); ROOM];
     spans.each(
@@ -200,7 +192,7 @@ fn light_each_inlined<const N: usize>(spans: &Spans<'_>, light: &impl Lit<N>, mu
             let length = span.len;
             let mut first = 0;
             while length - first >= LANES {
-                let lit = light.at(&lit::divide(&lit::numerators(&indices(first), &a, da, d, *dd)));
+                let lit: [_; N] = lit(light, &lit::divide(&lit::numerators(&indices(first), &a, da, d, *dd)));
                 for (i, out) in out.iter_mut().enumerate() {
                     if let Some(to) = out[span.first + first..].first_chunk_mut() {
                         *to = lit[i];

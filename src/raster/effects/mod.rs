@@ -81,11 +81,10 @@ pub use self::pipeline::{Limits, Mix, PixelLighting, PixelPipeline, SampleSpacin
 use self::spans::{ROOM, Shaded, Spans};
 pub use super::columns::Attributes;
 use super::columns::{Picks, Triangles, Value};
-use super::depth::{Cell, DepthBuffer};
+use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::pick::Pick;
 use super::reference::cover::Row;
-use super::setup::FrameLayout;
 use super::spans::{DrawArea, Drawn, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
@@ -99,8 +98,8 @@ use crate::span::{Kernel, lookup, lookup_row};
 /// allocates nothing.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EffectScratch {
-    /// A list of spans with the stages' data about them; empty until it is needed.
-    lists: Vec<(SpanList, SpanData)>,
+    /// A list of spans with the stages' data about them; allocated when it is needed.
+    lists: Option<Box<(SpanList, SpanData)>>,
     buffers: Buffers,
 }
 
@@ -131,13 +130,15 @@ impl Buffers {
 }
 
 impl EffectScratch {
-    /// Allocates the memory, 100 kB, the first time.
+    /// The memory, 100 kB, allocated the first time.
     #[inline]
-    fn make_room(&mut self) {
-        if self.lists.is_empty() {
-            self.lists.push((SpanList::NONE, SpanData::NONE));
-            self.buffers.make_room();
-        }
+    fn parts(&mut self) -> (&mut (SpanList, SpanData), &mut Buffers) {
+        let Self { lists, buffers } = self;
+        let lists = lists.get_or_insert_with(|| {
+            buffers.make_room();
+            Box::new((SpanList::NONE, SpanData::new()))
+        });
+        (lists, buffers)
     }
 
     /// Paints one row of pick `k`, found by another method, into `pixels`, the frame's whole row.
@@ -150,11 +151,10 @@ impl EffectScratch {
         kernel: Kernel,
         drawn: &mut DrawStats,
     ) {
-        self.make_room();
-        let Some((list, data)) = self.lists.first_mut() else { return };
-        list.begin((pixels.len(), 0), None);
+        let ((list, data), buffers) = self.parts();
         let mut target = Target { pixels, cells: None, kernel };
-        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, &mut self.buffers);
+        list.begin(&target, [0; 2]);
+        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
         spans.walk(k, 0);
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
@@ -292,27 +292,18 @@ impl<D: Cell> Raster<'_, D> {
         pipeline: &PixelPipeline<'_>,
         scratch: &mut EffectScratch,
     ) -> DrawStats {
-        scratch.make_room();
-        let EffectScratch { lists, buffers } = scratch;
-        let Some((list, data)) = lists.first_mut() else { return DrawStats::default() };
-        let (width, rows, clip, kernel) = (self.frame.width(), self.frame.rows(), self.clip, self.kernel);
-        let (_, pitch) = self.frame.pixels_mut();
-        let depth_base = self.depth.as_ref().map_or(0, |depth| depth.base);
-        let layout = FrameLayout { first_row: rows.start, pitch: pitch as u32, width, depth_base };
+        let ((list, data), buffers) = scratch.parts();
+        let (layout, clip, level) = (self.layout(), self.clip, self.kernel.simd_level());
         let fits = self.fits_lists();
         let mut drawn = DrawStats::default();
         let mut first = 0;
         while first < picks.picks.len() {
             let together = if HAS_F64 && fits { Pick::count_batched(&picks.picks[first..]) } else { 0 };
-            // A build that leaves out hidden surfaces (`plan::Effect::is_left_out`) has no depth.
-            let depth = self.depth.as_mut().filter(|_| !cfg!(mode13h_leave_out = "hidden-surfaces"));
             if together > 0 {
                 let picks = picks.range(first, first + together);
                 let spans = &mut EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
                 let of = Drawn { triangles, picks, in_pieces: true };
-                let (pixels, _) = self.frame.pixels_mut();
-                let target = &mut Target { pixels, cells: depth.map(DepthBuffer::cells), kernel };
-                drawn += draw_effects(kernel.simd_level(), of, (spans, list), (layout, clip), target);
+                drawn += draw_effects(level, of, (spans, list), (layout, clip), &mut self.target());
                 first += together;
                 continue;
             }
@@ -343,14 +334,13 @@ impl<D: Cell> Raster<'_, D> {
                     cells => cells,
                 },
             };
-            list.begin((pixels.len(), 0), cells.as_ref().map(|cells| (cells.len(), 0)));
             let mut target = Target { pixels, cells: cells.map(D::cells), kernel };
+            list.begin(&target, [0; 2]);
             spans.add_row(&row, list, &mut target);
             spans.draw_spans(list, &mut target);
             let of_row = list.counts();
             (count, nearer) = (count + of_row.0, nearer + of_row.2);
         });
-        let (pixels, tested) = if has_depth { (nearer, covered) } else { (covered, 0) };
-        DrawStats { spans: count, covered, pixels, tested, ..DrawStats::default() }
+        DrawStats::of_spans((count, covered, nearer), has_depth)
     }
 }

@@ -120,7 +120,7 @@ pub(super) fn record(
     picks: Picks<'_>,
     pipeline: &PixelPipeline<'_>,
 ) -> Vec<Recorded> {
-    let (mut data, mut buffers) = (SpanData::NONE, Buffers::default());
+    let (mut data, mut buffers) = (SpanData::new(), Buffers::default());
     let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut data, &mut buffers);
     let mut recorder = Recorder { spans, recorded: Vec::new() };
     let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };

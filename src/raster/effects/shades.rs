@@ -5,8 +5,8 @@ use alloc::vec::Vec;
 use super::Buffers;
 use super::curve::CurvePlane;
 use super::listing::FaceCorners;
-use super::lit::{Lit, light_each};
-use super::pipeline::{Mix, PixelLighting, PixelPipeline, ShadeSource};
+use super::lit::light_each;
+use super::pipeline::{Mix, PixelPipeline, ShadeSource};
 use super::spans::{Shaded, Spans};
 use crate::lanes::LANES;
 use crate::raster::columns::Value;
@@ -53,9 +53,7 @@ impl Spans<'_> {
         (bytes, shades, other): (&mut [&mut Vec<u8>; N], &mut [&mut Vec<u16>; N], &mut [u8]),
         pipeline: &PixelPipeline<'_>,
         kernel: Kernel,
-    ) where
-        for<'l> &'l dyn PixelLighting: Lit<N>,
-    {
+    ) {
         let has_channels = N > 1;
         let dither = pipeline.dither().filter(|_| !has_channels);
         let channel = |i: usize| has_channels.then_some(Value::Channel(i));
@@ -78,9 +76,9 @@ impl Spans<'_> {
             }
             ShadeSource::LitEvery(spacing, light) => {
                 let bytes = bytes.each_mut().map(|of| &mut of[..]);
-                return self.light_some(kernel, (spacing, &light), dither.unwrap_or(Thresholds::HALVES), bytes);
+                return self.light_some(kernel, (spacing, light), dither.unwrap_or(Thresholds::HALVES), bytes);
             }
-            ShadeSource::Lit(light) => light_each(kernel, self, &light, shades.each_mut().map(|of| &mut of[..])),
+            ShadeSource::Lit(light) => light_each(kernel, self, light, shades.each_mut().map(|of| &mut of[..])),
             ShadeSource::Curved(limits) => {
                 for (i, shades) in shades.iter_mut().enumerate() {
                     let plane = |face: &FaceCorners<'_>| CurvePlane::new(face, limits, N);

@@ -154,7 +154,8 @@ impl<'a> Spans<'a> {
     /// The mark of span `i`.
     #[inline(always)]
     fn mark(&self, i: usize) -> Mark {
-        self.data.mark(self.record(i))
+        let record = self.record(i);
+        Mark([self.data.numbers.of(record, 0), self.data.numbers.of(record, 1)])
     }
 
     /// The face of span `i`, among those whose planes are stored.
@@ -223,7 +224,7 @@ impl<'a> Spans<'a> {
     /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn first_shade(&self, i: usize) -> u32 {
-        self.data.shade(self.record(i))
+        self.data.numbers.of(self.record(i), 2)
     }
 
     /// The linear values of span `i` that this tint reads.
@@ -236,13 +237,15 @@ impl<'a> Spans<'a> {
     /// The start of a value of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
-        self.data.value(self.record(i), value.slot())
+        self.data.numbers.of(self.record(i), 3 + value.slot())
     }
 
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
-        self.data.affine(self.record(i))
+        let record = self.record(i);
+        let of = |k: usize| self.data.coordinates.of(record, k);
+        [[of(0), of(1)], [of(2), of(3)]]
     }
 
     /// The level of the face of span `i`, where the texture is linear on the screen.

@@ -780,15 +780,15 @@ mod tests {
             };
             let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
             let last = stage.levels.expect("it has some").last();
-            let (mut memory, mut buffers) = (listing::SpanData::NONE, Buffers::default());
+            let (mut memory, mut buffers) = (listing::SpanData::new(), Buffers::default());
             let faces = Faces { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
             let mut of_face = EffectSpans::new(faces, &pipeline, &mut memory, &mut buffers);
             let (mut rows, clip) = (Vec::new(), Rect { x0: 0, y0: 0, x1: 320, y1: 200 });
             of_face.walk(0, 0).rows(320, clip, |row| rows.push(row));
             let (mut pixels, mut list) = ([0; 320], SpanList::NONE);
             for row in rows.iter().step_by(7) {
-                list.begin((320, 0), None);
                 let mut target = Target { pixels: &mut pixels, cells: None, kernel: Kernel::PORTABLE };
+                list.begin(&target, [0; 2]);
                 of_face.add_row(row, &mut list, &mut target);
                 let spans = Spans::all(&of_face.listed, &list);
                 for (i, k) in

@@ -71,13 +71,6 @@ impl Divisor {
         self.div_rem_floor(n).0
     }
 
-    /// The quotient rounded toward plus infinity.
-    #[must_use]
-    #[inline]
-    pub fn ceil(&self, n: i64) -> i64 {
-        self.floor(n + (self.divisor - 1))
-    }
-
     /// The quotient rounded toward zero.
     #[must_use]
     #[inline]
@@ -107,7 +100,6 @@ mod tests {
         assert_eq!(divisor.div_rem_floor(n), (n.div_euclid(d), n.rem_euclid(d)), "{n} / {d}");
         assert_eq!(divisor.truncate(n), n / d, "{n} / {d}");
         assert_eq!(in_integers(n, d), divisor.div_rem_floor(n), "{n} / {d}");
-        assert_eq!(divisor.ceil(n), -((-n).div_euclid(d)), "{n} / {d}");
     }
 
     #[test]

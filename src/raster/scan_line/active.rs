@@ -11,7 +11,7 @@ use crate::raster::vertex::Vertex;
 /// A face whose rows are being walked: the two edges that cross the current row. Opaque; the caller lends a slice of
 /// them ([`Lists`](super::Lists)).
 #[derive(Clone, Copy, Debug, Default)]
-pub struct EdgePair {
+pub(super) struct EdgePair {
     triangle: SortedTriangle,
     pub(super) interpolation: Interpolation,
     /// The face's index among all faces: at equal depths the first gets the pixel.

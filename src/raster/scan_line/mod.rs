@@ -35,7 +35,7 @@ mod nearest;
 
 use alloc::vec::Vec;
 
-pub use self::active::EdgePair;
+use self::active::EdgePair;
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::interpolation::Interpolation;

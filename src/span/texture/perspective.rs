@@ -75,10 +75,6 @@ pub(crate) struct PerspectiveSums<F> {
     pub(crate) margin: i32,
 }
 
-impl PerspectiveSums<f64> {
-    const NONE: Self = Self { numerators: [[0.0; 2]; 2], divisors: [0.0; 2], base: [0; 2], margin: 0 };
-}
-
 /// The offsets of the texels from number `range.0` to `range.1` of a span, at most 64, by [`Quotients`]. Where a
 /// quotient cannot decide, `exact` stores the offsets of eight texels, from the one with the given number on.
 #[inline(always)]
@@ -88,10 +84,7 @@ pub(crate) fn perspective_along<S: Lanes8>(
     range: (usize, usize),
     exact: impl FnMut(usize, &mut [i32; LANES]),
 ) -> impl OffsetsAlong<S> {
-    let sums = if HAS_F64 { sums } else { PerspectiveSums::NONE };
-    let s = offsets.s;
-    let mut quotients = Quotients::new(offsets, &sums, range.1);
-    quotients.are_sure &= HAS_F64;
+    let (s, quotients) = (offsets.s, Quotients::new(offsets, &sums, range.1));
     // At most 64.
     let numbers = s.add_i32(s.splat_i32(range.0 as i32), s.load_i32(&NUMBERS));
     PerspectiveAlong { offsets: quotients.offsets, quotients, numbers, first: range.0, exact }
@@ -223,12 +216,14 @@ impl<S: Lanes8> Quotients<S> {
         }
         Self { offsets, sums: *sums, end: offsets.s.splat_i32(end as i32), are_sure }
     }
+}
 
-    /// The coordinates at pixels with these numbers, and whether any of them is undecided.
+impl<S: Lanes8> QuotientsAlong<S> for Quotients<S> {
+    type Numbers = S::I32;
+
     #[inline(always)]
-    fn coordinates(&self, numbers: S::I32) -> ([S::I32; 2], bool) {
+    fn at(&self, s: S, numbers: S::I32) -> ([S::I32; 2], bool) {
         let PerspectiveSums { numerators: [[u, du], [v, dv]], divisors: [d, dd], base, .. } = self.sums;
-        let s = self.offsets.s;
         let (magic, fraction, zero) = (s.splat_f64(ROUND_MAGIC), self.offsets.fraction(), s.splat_i32(0));
         let k = s.to_f64(numbers);
         let reciprocal = s.div(s.splat_f64(1.0), s.mul_add(k, s.splat_f64(dd), s.splat_f64(d)));
@@ -240,15 +235,6 @@ impl<S: Lanes8> Quotients<S> {
         let is_there = s.is_greater(self.end, numbers);
         let unsure = s.to_bitmask(s.and(is_there, s.is_equal(least, zero)));
         (at, unsure != 0 || !self.are_sure)
-    }
-}
-
-impl<S: Lanes8> QuotientsAlong<S> for Quotients<S> {
-    type Numbers = S::I32;
-
-    #[inline(always)]
-    fn at(&self, _: S, numbers: S::I32) -> ([S::I32; 2], bool) {
-        self.coordinates(numbers)
     }
 
     #[inline(always)]
