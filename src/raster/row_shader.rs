@@ -216,7 +216,7 @@ impl RowShader {
                 for (i, shade) in shades.iter_mut().enumerate() {
                     let k = i as f64;
                     let of = |[[n, dn], [d, dd]]: [[f64; 2]; 2]| nearest_whole((n + k * dn) / (d + k * dd));
-                    // The estimate, rounded to a whole number, is less than 1 off: see `fill_estimated_quotients`.
+                    // The estimate, rounded to a whole number, is less than 1 off: see `fill_estimated_blocks`.
                     let estimate = estimates.map_or(0, of);
                     *shade = if estimate & 0xFF == 0 {
                         // A column is below 4,096.

@@ -13,7 +13,9 @@ use super::setup::{Corners8, Edges, Floats, FrameLayout, Ints, TriangleSetup8, V
 use crate::fixed::ROUND_MAGIC;
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
-use crate::span::list::{DepthSteps, Records, SpanList, Spans8, Target};
+use crate::span::list::{DepthSteps, SpanList, Spans8};
+use crate::span::records::Records;
+use crate::span::target::Target;
 
 /// The greatest height, in rows, of small triangles that are walked eight at a time; their rows are
 /// sorted by triangle afterwards.
@@ -205,7 +207,7 @@ pub(super) trait Shades8 {
 
     /// Draws the spans of a list and empties it; with `DEPTHS`, only where they are nearer than the
     /// target's cells.
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>);
+    fn draw<const DEPTHS: bool>(&mut self, list: &mut SpanList, target: &mut Target<'_>);
 }
 
 /// Linear shades in 8.8, or a single shade per triangle, which needs no plane: all of its rows start with it.
@@ -231,7 +233,7 @@ impl Shades8 for Linear {
 
     #[inline(always)]
     fn set_up<S: Lanes8>(&mut self, s: S, corners: &Corners8, setup: &mut TriangleSetup8, of: (FrameLayout, bool)) {
-        part(
+        part::<S, Self, _>(
             s,
             #[inline(always)]
             || {
@@ -261,7 +263,7 @@ impl Shades8 for Linear {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+    fn draw<const DEPTHS: bool>(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         list.draw_by::<DEPTHS>(target);
     }
 }
@@ -348,14 +350,11 @@ impl<S: Lanes8> RowCursor8<S> {
         list: &SpanList,
         (number, has_depths): (i32, bool),
     ) -> Spans8<S> {
-        if const { is_apart::<S, P>() } {
-            s.apart(
-                #[inline(always)]
-                || self.row(s, setup, shades, list, (number, has_depths)),
-            )
-        } else {
-            self.row(s, setup, shades, list, (number, has_depths))
-        }
+        part::<S, P, _>(
+            s,
+            #[inline(always)]
+            || self.row(s, setup, shades, list, (number, has_depths)),
+        )
     }
 
     #[inline(always)]
@@ -395,18 +394,12 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Returns whether lanes are plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while
-/// inlining makes a build take half as long again or more. Vectors are aligned to their size.
-#[inline(always)]
-const fn are_arrays<S: Lanes8>() -> bool {
-    align_of::<S::F64>() < 16
-}
-
-/// Returns whether each row is computed and listed out of line: in plain arrays, and for records in narrow vectors,
-/// which would otherwise be spilled.
+/// Returns whether the parts of the loop over triangles are calls: for records in narrow vectors, which would otherwise
+/// be spilled, and in plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while inlining makes
+/// a build take half as long again or more. Vectors are aligned to their size.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
-    are_arrays::<S>() || align_of::<S::F64>() == 16 && !P::IS_LINEAR
+    align_of::<S::F64>() < if P::IS_LINEAR { 16 } else { 32 }
 }
 
 /// Returns whether spans have depths: if their list may have them, and there are cells. Linear shades are compiled for
@@ -422,24 +415,21 @@ fn depth_steps<S: Lanes8>(setup: &TriangleSetup8, i: usize, has_depths: bool) ->
     if has_depths { Some(DepthSteps::All(setup.z_per_column[i % LANES])) } else { None }
 }
 
-/// Calls a part of the loop over triangles, inlined unless lanes are plain arrays. The condition is constant, so that
-/// the call is not compiled for the other levels.
+/// Calls a part of the loop over triangles, out of line or inlined, as the level requires. The condition is constant, so
+/// that the call is not compiled for the other levels.
 #[inline(always)]
-fn part<S: Lanes8, R>(s: S, part: impl FnOnce() -> R) -> R {
-    if const { are_arrays::<S>() } { s.apart(part) } else { part() }
+fn part<S: Lanes8, P: Shades8, R>(s: S, part: impl FnOnce() -> R) -> R {
+    if const { is_apart::<S, P>() } { s.apart(part) } else { part() }
 }
 
 /// Appends spans, out of line or inlined, as the level requires.
 #[inline(always)]
 fn append<S: Lanes8, P: Shades8>(s: S, list: &mut SpanList, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {
-    if const { is_apart::<S, P>() } {
-        s.apart(
-            #[inline(always)]
-            || list.append(s, spans, dz),
-        );
-    } else {
-        list.append(s, spans, dz);
-    }
+    part::<S, P, _>(
+        s,
+        #[inline(always)]
+        || list.append(s, spans, dz),
+    );
 }
 
 /// Lists all rows of eight small triangles of at most [`MAX_SHORT_ROWS`] rows each, triangle by triangle. The list must

@@ -66,13 +66,10 @@ pub(super) struct Corners8 {
     pub(super) shade: [Ints; 3],
     /// Depths: the bits of a `u32` each.
     pub(super) depth: [Ints; 3],
-    /// True if all corners have the shade of the first.
-    are_flat: bool,
 }
 
 impl Corners8 {
-    pub(super) const NONE: Self =
-        Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3], are_flat: false };
+    pub(super) const NONE: Self = Self { at: [[0; LANES]; 3], shade: [[0; LANES]; 3], depth: [[0; LANES]; 3] };
 
     /// Reads the first eight of these triangles, with depths only if `DEPTHS`.
     #[inline(always)]
@@ -81,9 +78,9 @@ impl Corners8 {
         // Sliced to one length, so that a vertex's index is bounds-checked once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
-        self.are_flat = !picks.flat.is_empty();
+        let are_flat = !picks.flat.is_empty();
         if let Some(first) = triangles.consecutive(picks)
-            && !self.are_flat
+            && !are_flat
             && self.load(triangles, first).is_some()
         {
             return;
@@ -94,7 +91,7 @@ impl Corners8 {
             for (corner, vertex) in indices.into_iter().enumerate() {
                 let vertex = vertex as usize;
                 self.at[corner][lane] = u64::from(at[vertex]).cast_signed();
-                if !self.are_flat {
+                if !are_flat {
                     self.shade[corner][lane] = i32::from(shade[vertex][pick.side()].to_bits());
                 }
                 if DEPTHS {
@@ -103,7 +100,9 @@ impl Corners8 {
             }
         }
         for (lane, flat) in picks.flat.iter().take(LANES).enumerate() {
-            self.shade[0][lane] = i32::from(flat[0].to_bits());
+            for shades in &mut self.shade {
+                shades[lane] = i32::from(flat[0].to_bits());
+            }
         }
     }
 
@@ -165,18 +164,6 @@ pub(super) struct ValuePlanes8 {
 impl ValuePlanes8 {
     pub(super) const NONE: Self =
         Self { n: [0.0; LANES], per_row: [0.0; LANES], per_column: [0.0; LANES], step: [0; LANES] };
-
-    /// Sets up the planes of a constant value for each triangle.
-    #[inline(always)]
-    fn set_up_constant<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, values: &Ints) {
-        let (area, zero) = (basis.area, s.splat_f64(0.0));
-        let half = s.mul_add(area, s.splat_f64(0.5), s.splat_f64(-0.5));
-        let n = s.mul(s.add(s.to_f64(s.load_i32(values)), s.splat_f64(128.0)), area);
-        s.store_f64(s.sub(n, half), &mut self.n);
-        s.store_f64(zero, &mut self.per_column);
-        s.store_f64(zero, &mut self.per_row);
-        s.store_i32(s.splat_i32(0), &mut self.step);
-    }
 
     /// Sets up the planes of these values at the corners.
     #[inline(always)]
@@ -314,11 +301,7 @@ impl TriangleSetup8 {
         let inverse = s.div(s.splat_f64(1.0), area);
         let basis = Basis { order, first: [fx0, fy0], second: [dx1, dy1], third: [dx2, dy2], signed, area, inverse };
         if has_planes {
-            if corners.are_flat {
-                self.shade.set_up_constant(s, &basis, &corners.shade[0]);
-            } else {
-                self.shade.set_up(s, &basis, &corners.shade);
-            }
+            self.shade.set_up(s, &basis, &corners.shade);
         }
         s.store_f64(inverse, &mut self.inverse);
         // Triangles without area have no rows.

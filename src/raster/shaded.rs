@@ -47,7 +47,9 @@ use crate::simd::{Lanes8, compiled_for_each_level};
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float_blocks;
 use crate::span::hyperbolic::fill_estimated_blocks;
-use crate::span::list::{Records, Span, SpanBytes, SpanList, SpanNumbers, SpanSums, Target, Written};
+use crate::span::list::{Span, SpanList};
+use crate::span::records::{RecordColumns, Records, SpanBytes};
+use crate::span::target::{Target, Written};
 
 /// Shadings that are set up and filled here.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -89,16 +91,16 @@ pub(crate) struct ShadedData {
     steps: [Steps8; Batches::COUNT],
     /// 16.16: shade and step. Otherwise the triangle, among those whose steps are stored; in f32 with the index of the
     /// first pixel, relative to the pixel where the sums are, in the upper half.
-    numbers: SpanNumbers<2>,
+    numbers: RecordColumns<i32, 2>,
     /// Numerator and divisor.
-    sums: SpanSums<2>,
+    sums: RecordColumns<i64, 2>,
     bytes: SpanBytes,
 }
 
 impl Default for ShadedData {
     fn default() -> Self {
         let steps = Steps8 { sums: [[0.0; LANES]; 2], words: [[0; LANES]; 4] };
-        let (numbers, sums, bytes) = (SpanNumbers::NONE, SpanSums::NONE, SpanBytes::NONE);
+        let (numbers, sums, bytes) = (RecordColumns::new(), RecordColumns::new(), SpanBytes::NONE);
         Self { steps: [steps; Batches::COUNT], numbers, sums, bytes }
     }
 }
@@ -299,8 +301,9 @@ impl<'a> Shaded8<'a> {
             for k in first..end {
                 let span = list.span(k);
                 let record = span.fill as usize;
-                let face = numbers.of(record, 0);
-                let sums = starts.of(record).map(|bits| f64::from_bits(bits.cast_unsigned()));
+                let face = numbers.of(record, 0).cast_unsigned();
+                let sum = |i: usize| f64::from_bits(starts.of(record, i).cast_unsigned());
+                let sums = [sum(0), sum(1)];
                 let bytes = all_bytes.of_mut(k - first);
                 let row = (&mut bytes[..], span.length as usize);
                 if IS_ESTIMATE {
@@ -402,17 +405,17 @@ impl Shades8 for Shaded8<'_> {
             let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
             let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
             let step = lane.load_i32(s, &steps.words[0]);
-            numbers.put(s, record, 0, s.add_i32(start, s.mul_i32(step, skipped)));
-            numbers.put(s, record, 1, step);
+            s.store_i32(s.add_i32(start, s.mul_i32(step, skipped)), numbers.eight(record, 0));
+            s.store_i32(step, numbers.eight(record, 1));
             return records;
         }
         if self.kind == Kind::Hyperbolic {
             let columns = s.sub(parts.start, magic);
-            numbers.put(s, record, 0, face);
+            s.store_i32(face, numbers.eight(record, 0));
             for (i, [at_first, per_row]) in self.planes.iter().enumerate() {
                 let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
                 let sum = s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row);
-                starts.put(s, record, i, s.bits(sum));
+                s.store_i64(s.bits(sum), starts.eight(record, i));
             }
             return records;
         }
@@ -420,7 +423,7 @@ impl Shades8 for Shaded8<'_> {
         let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
         let at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
         let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
-        numbers.put(s, record, 0, s.or_i32(face, s.shl_i32(first, 16)));
+        s.store_i32(s.or_i32(face, s.shl_i32(first, 16)), numbers.eight(record, 0));
         let columns = s.sub(at, magic);
         let mut sums = [s.splat_f64(0.0); 2];
         for (weights, values) in self.weights.iter().zip(&self.values) {
@@ -433,7 +436,7 @@ impl Shades8 for Shaded8<'_> {
             }
         }
         for (i, sum) in sums.into_iter().enumerate() {
-            starts.put(s, record, i, s.bits(sum));
+            s.store_i64(s.bits(sum), starts.eight(record, i));
         }
         records
     }
@@ -453,7 +456,7 @@ impl Shades8 for Shaded8<'_> {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+    fn draw<const DEPTHS: bool>(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         draw_listed(target.kernel.simd_level(), self, list, target);
     }
 }
@@ -474,7 +477,8 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     match shades.kind {
         Kind::Fixed16 => {
             let numbers = &shades.data.numbers;
-            let of_span = |record: u32| (numbers.of(record as usize, 0), numbers.of(record as usize, 1));
+            let number = |record: u32, i: usize| numbers.of(record as usize, i).cast_unsigned();
+            let of_span = |record: u32| (number(record, 0), number(record, 1));
             let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
             list.clear(nearer);
         }

@@ -35,7 +35,8 @@ use super::vertex::Vertex;
 use crate::fixed::{HAS_F64, I24F8};
 use crate::lanes::{LANES, three};
 use crate::simd::{Lanes8, Level, compiled_for_each_level};
-use crate::span::list::{SpanList, Target};
+use crate::span::list::SpanList;
+use crate::span::target::Target;
 
 /// Triangles, and whether their rows are split into pieces of 64 pixels, at which linear shades are
 /// reseeded.
@@ -246,10 +247,6 @@ fn draw_shaded_by<S: Lanes8>(
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    // As in `draw_triangles`.
-    if !HAS_F64 {
-        return DrawStats::default();
-    }
     let mut shades = Shaded8::new(kind, (of.triangles, of.picks), area.0, data);
     draw_triangles::<S, _, true>(s, of, area, target, &mut shades, list)
 }
@@ -283,7 +280,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     gather_first::<DEPTHS>(&mut corners, triangles, &picks);
     for (number, eight) in picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
-            shades.draw::<S, DEPTHS>(s, list, target);
+            shades.draw::<DEPTHS>(list, target);
         }
         shades.begin(number * LANES);
         shades.set_up(s, &corners, &mut setup, (layout, has_depths));
@@ -296,7 +293,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             setup.rows[eight.len()..].fill(0);
         }
         if !list.has_room(LANES * LANES) || !shades.has_room(rows::MAX_SHORT_ROWS as usize) {
-            shades.draw::<S, DEPTHS>(s, list, target);
+            shades.draw::<DEPTHS>(list, target);
         }
         let are_small = Pick::are_small(eight);
         if are_small {
@@ -311,7 +308,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             if pick.class() == SizeClass::Small {
                 for first in (0..rows).step_by(LANES) {
                     if !list.has_room(LANES) || !shades.has_room(1) {
-                        shades.draw::<S, DEPTHS>(s, list, target);
+                        shades.draw::<DEPTHS>(list, target);
                     }
                     rows::list_eight_rows::<S, P, DEPTHS>(s, &setup, shades, (i, first), list);
                 }
@@ -329,7 +326,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             }
         }
     }
-    shades.draw::<S, DEPTHS>(s, list, target);
+    shades.draw::<DEPTHS>(list, target);
     DrawStats::of_spans(list.counts(), has_depths)
 }
 
@@ -363,7 +360,7 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     }
     while first < end {
         if !list.has_room(LANES * pieces) || !shades.has_room(pieces) {
-            shades.draw::<S, DEPTHS>(s, list, target);
+            shades.draw::<DEPTHS>(list, target);
         }
         let (part, cut) = ((i, first), (pieces, longest));
         rows::list_pieces::<S, P, DEPTHS>(s, setup, shades, part, cut, (clip, layout.width), list);

@@ -25,38 +25,12 @@ pub fn fill_quotients(row: &mut [u8], n: i128, dn: i128, d: i128, dd: i128) {
     }
 }
 
-/// Fills `row` with quotients in f64, for rows in which these nearly always decide.
+/// Fills `row` with quotients in f64, in whole blocks of eight, for which it has room: bytes after the first `length` are
+/// arbitrary. Returns false if an estimate cannot decide a byte, including an arbitrary one; nearly always all decide.
 ///
 /// (n + k·dn) / (d + k·dd) is 65,536 times the byte's quotient, 0 to 2²⁴, computed with an error of less than ½: a
 /// product and a sum each in numerator and denominator, and a quotient. Rounded to an integer it is less than 1 off, so
-/// its upper 8 bits are the byte unless the lower 16 are 0; in that case `exact` returns the byte.
-#[inline]
-pub(crate) fn fill_estimated_quotients(
-    row: &mut [u8],
-    [n, dn]: [f64; 2],
-    [d, dd]: [f64; 2],
-    mut exact: impl FnMut(usize) -> u8,
-) {
-    const LANES: usize = 4;
-
-    let mut first = 0;
-    let mut places = [0.0, 1.0, 2.0, 3.0];
-    for pixels in row.chunks_mut(LANES) {
-        let mut estimates = [0_i64; LANES];
-        for (estimate, k) in estimates.iter_mut().zip(&mut places) {
-            *estimate = nearest_whole((n + *k * dn) / (d + *k * dd));
-            *k += LANES as f64;
-        }
-        for (lane, (pixel, estimate)) in pixels.iter_mut().zip(estimates).enumerate() {
-            // Below 2²⁴.
-            *pixel = if estimate & 0xFFFF == 0 { exact(first + lane) } else { (estimate >> 16) as u8 };
-        }
-        first += LANES;
-    }
-}
-
-/// Fills as [`fill_estimated_quotients`] does, but in whole blocks of eight, for which `row` has room: bytes after the
-/// first `length` are arbitrary. Returns false if an estimate cannot decide a byte, including an arbitrary one.
+/// its upper 8 bits are the byte unless the lower 16 are 0.
 #[inline(always)]
 pub(crate) fn fill_estimated_blocks<S: Lanes8>(
     s: S,

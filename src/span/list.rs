@@ -7,12 +7,8 @@
 //! or, with a depth test, `fill_nearer`. Rows of triangles are appended eight at a time; lanes without pixels, and
 //! spans that do not lie inside the pixels, are dropped by compression, so no branch depends on how many there are.
 
-use core::ops::Range;
-
-use super::Kernel;
-use super::depth::{Cell, Cells, copy_nearer, copy_nearer_keep_depth, fill_nearer};
-use super::depth_test::copy_span;
-use crate::fixed::IS_COMPACT;
+use super::depth::{Cell, fill_nearer};
+use super::target::{SpanDepth, Target};
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
 
@@ -40,7 +36,7 @@ pub(crate) struct SpanList {
     /// Offsets of the first cells, if there are depths and these offsets differ from those of the pixels.
     cell: Numbers,
     length: Numbers,
-    /// The shade, with the step in the upper half; or the index of a [record](Records) in the lowest eight bits.
+    /// The shade, with the step in the upper half; or the index of a [record](super::records::Records) in the lowest eight bits.
     fill: Numbers,
     /// Depths, with the integer part in the upper half, modulo 2⁶⁴.
     z: Depths,
@@ -349,228 +345,6 @@ impl SpanList {
     }
 }
 
-/// The records in use, of spans that are filled with more than a linear shade. The list has the index of a span's
-/// record.
-///
-/// Eight rows are recorded together, whether or not they have pixels, so that only the index has to be compressed and
-/// sorted by triangle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Records {
-    /// Number of records in use, a multiple of eight.
-    count: usize,
-}
-
-const _: () = assert!(Records::CAPACITY == 256, "an index takes eight bits of a span's fill");
-
-impl Records {
-    /// Number of records that there can be: those of 64 triangles of up to four rows.
-    const CAPACITY: usize = 256;
-    pub(crate) const NONE: Self = Self { count: 0 };
-
-    /// Returns whether there is room for this many rows of eight.
-    #[inline(always)]
-    pub(crate) fn have_room(&self, rows: usize) -> bool {
-        self.count + rows * LANES <= Self::CAPACITY
-    }
-
-    /// Begins eight records. Returns the index of the first.
-    #[inline(always)]
-    pub(crate) fn begin(&mut self) -> usize {
-        let first = self.count;
-        self.count += LANES;
-        first
-    }
-}
-
-/// Sums in the records of spans, `N` of them each.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct SpanSums<const N: usize>([[i64; Records::CAPACITY]; N]);
-
-impl<const N: usize> SpanSums<N> {
-    pub(crate) const NONE: Self = Self([[0; Records::CAPACITY]; N]);
-
-    /// Stores sum `i` of eight spans.
-    #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, first: usize, i: usize, sums: S::I64) {
-        s.store_i64(sums, eight_records(&mut self.0[i], first));
-    }
-
-    #[cfg(feature = "alloc")]
-    pub(crate) fn set(&mut self, record: usize, sums: [i64; N]) {
-        for (to, sum) in self.0.iter_mut().zip(sums) {
-            to[record % Records::CAPACITY] = sum;
-        }
-    }
-
-    /// The sums of a record.
-    #[inline(always)]
-    pub(crate) fn of(&self, record: usize) -> [i64; N] {
-        let (record, mut of) = (record % Records::CAPACITY, [0; N]);
-        for (i, of) in of.iter_mut().enumerate() {
-            *of = self.0[i][record];
-        }
-        of
-    }
-}
-
-/// Numbers in the records of spans, `N` of them each.
-#[derive(Clone, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct SpanNumbers<const N: usize>([[i32; Records::CAPACITY]; N]);
-
-impl<const N: usize> SpanNumbers<N> {
-    pub(crate) const NONE: Self = Self([[0; Records::CAPACITY]; N]);
-
-    /// Stores number `i` of eight spans.
-    #[inline(always)]
-    pub(crate) fn put<S: Lanes8>(&mut self, s: S, first: usize, i: usize, numbers: S::I32) {
-        s.store_i32(numbers, eight_records(&mut self.0[i], first));
-    }
-
-    /// Number `i` of a record.
-    #[inline(always)]
-    pub(crate) fn of(&self, record: usize, i: usize) -> u32 {
-        self.0[i % N][record % Records::CAPACITY].cast_unsigned()
-    }
-
-    #[cfg(feature = "alloc")]
-    pub(crate) fn set(&mut self, record: usize, numbers: [u32; N]) {
-        for (to, number) in self.0.iter_mut().zip(numbers) {
-            to[record % Records::CAPACITY] = number.cast_signed();
-        }
-    }
-}
-
-/// Eight records from a multiple of eight on.
-#[inline(always)]
-fn eight_records<T>(of: &mut [T; Records::CAPACITY], first: usize) -> &mut [T; LANES] {
-    &mut of.as_chunks_mut().0[first / LANES % (Records::CAPACITY / LANES)]
-}
-
-/// Bytes of some spans of a list, 64 each.
-#[derive(Debug)]
-pub(crate) struct SpanBytes([[u8; SpanBytes::LENGTH]; SpanBytes::COUNT]);
-
-impl SpanBytes {
-    /// The most pixels of a span.
-    pub(crate) const LENGTH: usize = 64;
-    /// The number of spans at a time.
-    pub(crate) const COUNT: usize = 16;
-
-    pub(crate) const NONE: Self = Self([[0; Self::LENGTH]; Self::COUNT]);
-
-    /// The bytes of span `k` among these.
-    #[inline(always)]
-    pub(crate) fn of(&self, k: usize) -> &[u8; Self::LENGTH] {
-        &self.0[k % Self::COUNT]
-    }
-
-    #[inline(always)]
-    pub(crate) fn of_mut(&mut self, k: usize) -> &mut [u8; Self::LENGTH] {
-        &mut self.0[k % Self::COUNT]
-    }
-}
-
-/// The destination of spans.
-pub(crate) struct Target<'a> {
-    pub(crate) pixels: &'a mut [u8],
-    /// The cells of the depth buffer, if there is one.
-    pub(crate) cells: Option<Cells<'a>>,
-    pub(crate) kernel: Kernel,
-}
-
-/// The bytes of a span, and its offset. Bytes after the first `length` are not its own.
-pub(crate) struct Written<'a> {
-    pub(crate) at: u32,
-    pub(crate) bytes: &'a [u8],
-    /// At most 64.
-    pub(crate) length: usize,
-}
-
-impl Target<'_> {
-    /// Writes the bytes of these spans in order: if there are cells, only where they are nearer, and with `keeps`
-    /// storing their depths in the cells. Returns the number of nearer pixels.
-    #[inline(always)]
-    pub(crate) fn write_each<'b, S: Lanes8>(
-        &mut self,
-        s: S,
-        spans: Range<usize>,
-        (of, depth_of): (impl Fn(usize) -> Written<'b>, impl Fn(usize) -> SpanDepth),
-        keeps: bool,
-    ) -> u32 {
-        let (pixels, mut nearer) = (&mut *self.pixels, 0);
-        match &mut self.cells {
-            None => {
-                for k in spans {
-                    let Written { at, bytes, length } = of(k);
-                    self.kernel.copy(length, pixels.get_mut(at as usize..).unwrap_or_default(), bytes);
-                }
-            }
-            Some(Cells::U32(cells)) => {
-                for k in spans {
-                    let Written { at, bytes, length } = of(k);
-                    let (at, cell) = (at as usize, depth_of(k).cell as usize);
-                    // Most spans.
-                    if !IS_COMPACT
-                        && length <= LANES
-                        && let Some(new) = bytes.first_chunk()
-                        && let Some(block) = chunk_at(pixels, at)
-                        && let Some(eight) = chunk_at(cells, cell)
-                    {
-                        // Read after the checks, so that each is broadcast from memory.
-                        let SpanDepth { z, dz, .. } = depth_of(k);
-                        nearer += s.copy_nearer((block, eight), (*new, length), [z, dz], keeps);
-                    } else if let Some(row) = pixels.get_mut(at..)
-                        && let Some(cells) = cells.get_mut(cell..)
-                    {
-                        let SpanDepth { z, dz, .. } = depth_of(k);
-                        nearer += copy_span(s, (row, cells), (bytes, length), keeps, [z, dz]);
-                    }
-                }
-            }
-            Some(Cells::U16(cells)) => {
-                for k in spans {
-                    let (Written { at, bytes, length }, SpanDepth { cell, z, dz }) = (of(k), depth_of(k));
-                    let bytes = &bytes[..length.min(bytes.len())];
-                    if let (Some(row), Some(cells)) = (pixels.get_mut(at as usize..), cells.get_mut(cell as usize..)) {
-                        nearer += match keeps {
-                            true => copy_nearer(row, cells, bytes, z >> 8, dz >> 8),
-                            false => copy_nearer_keep_depth(row, cells, bytes, z >> 8, dz >> 8),
-                        };
-                    }
-                }
-            }
-        }
-        nearer
-    }
-
-    /// [`write_each`](Self::write_each) for one span.
-    #[inline(always)]
-    pub(crate) fn write<S: Lanes8>(
-        &mut self,
-        s: S,
-        Written { at, bytes, length }: Written<'_>,
-        depth: SpanDepth,
-        keeps: bool,
-    ) -> u32 {
-        let of = (
-            #[inline(always)]
-            |_| Written { at, bytes, length },
-            #[inline(always)]
-            |_| depth,
-        );
-        self.write_each(s, 0..1, of, keeps)
-    }
-}
-
-/// Eight elements from an index on, if there are that many.
-#[inline(always)]
-pub(crate) fn chunk_at<T>(of: &mut [T], at: usize) -> Option<&mut [T; LANES]> {
-    // No overflow: offsets are below 2³¹.
-    of.get_mut(at..at + LANES)?.first_chunk_mut()
-}
-
 /// A span of a list.
 #[derive(Clone, Copy)]
 pub(crate) struct Span {
@@ -579,15 +353,6 @@ pub(crate) struct Span {
     pub(crate) length: u32,
     /// Its fill, as in the list.
     pub(crate) fill: u32,
-}
-
-/// The depth of a span, with the integer part in the upper half, modulo 2⁶⁴.
-#[derive(Clone, Copy)]
-pub(crate) struct SpanDepth {
-    /// The offset of its first cell.
-    pub(crate) cell: u32,
-    pub(crate) z: i64,
-    pub(crate) dz: i64,
 }
 
 /// The depths of the spans of a list.

@@ -2,7 +2,9 @@
 
 use super::Kernel;
 use super::depth::Cell;
-use super::list::{DepthSteps, SpanBytes, SpanDepth, SpanList, Spans8, Target, Written};
+use super::list::{DepthSteps, SpanList, Spans8};
+use super::records::SpanBytes;
+use super::target::{SpanDepth, Target, Written};
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 

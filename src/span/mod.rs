@@ -68,12 +68,14 @@ pub(crate) mod listed;
 pub(crate) mod lit;
 pub(crate) mod lookup;
 mod portable;
+pub(crate) mod records;
 #[cfg(feature = "simd")]
 #[cfg_attr(
     any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32"),
     allow(unsafe_code, reason = "vector stores, and code for processors found only when the program runs")
 )]
 mod simd;
+pub(crate) mod target;
 pub(crate) mod texture;
 mod thresholds;
 #[cfg(any(asm_x86_64, asm_i686))]
@@ -231,9 +233,9 @@ impl Kernel {
             #[cfg(simd_x86_64)]
             Level::Avx512(avx512) => simd::avx512::fill_spans(avx512, pixels, spans),
             #[cfg(simd_neon)]
-            Level::Neon => simd::neon::fill_spans(pixels, spans),
+            Level::Neon => spans.each(pixels, simd::neon::fill),
             #[cfg(simd_wasm)]
-            Level::Wasm => simd::wasm::fill_spans(pixels, spans),
+            Level::Wasm => spans.each(pixels, simd::wasm::fill),
             #[cfg(any(asm_x86_64, asm_i686))]
             _ => spans.each(pixels, |row, shade, step| self.fill(row, shade, step)),
         }
@@ -245,7 +247,7 @@ impl Kernel {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Cells::U32(cells)) = (self.avx2(), &mut *cells) {
             return match self.level.avx512() {
-                Some(avx512) => simd::avx512::fill_spans_nearer(avx512, pixels, cells, spans),
+                Some(avx512) => simd::avx512::fill_spans_nearer::<false>(avx512, pixels, cells, spans, |_| (0, 0)),
                 None => simd::nearer::fill_spans(avx2, pixels, cells, spans),
             };
         }
@@ -268,7 +270,7 @@ impl Kernel {
         #[cfg(simd_x86_64)]
         if let (Some(avx2), Some(Cells::U32(cells))) = (self.avx2(), &mut *cells) {
             return match self.level.avx512() {
-                Some(avx512) => simd::avx512::fill_spans_16_16(avx512, pixels, cells, spans, shades),
+                Some(avx512) => simd::avx512::fill_spans_nearer::<true>(avx512, pixels, cells, spans, shades),
                 None => simd::nearer::fill_spans_16_16(avx2, pixels, cells, spans, shades),
             };
         }

@@ -1,5 +1,6 @@
 //! Faces with effects given as vertices: an adapter to the columns.
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 use core::mem;
 

@@ -6,7 +6,7 @@ use crate::fixed::IS_COMPACT;
 use crate::lanes::LANES;
 use crate::simd::Lanes8;
 use crate::span::depth_test::{Masks, test_blocks};
-use crate::span::list::{SpanDepth, chunk_at};
+use crate::span::target::{SpanDepth, chunk_at};
 use crate::span::texture::{FOUR, OffsetsAlong, Texels, Tint, show_along, show_block, show_masked};
 
 /// Destination of the pixels of spans.

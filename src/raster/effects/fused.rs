@@ -9,7 +9,7 @@ use crate::fixed::{IS_COMPACT, IS_SMALL};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
-use crate::span::list::Target;
+use crate::span::target::Target;
 use crate::span::texture::{Blended, FirstOffset, Fogged, FoggedShades, Texels, Tint};
 
 impl Direct<'_> {

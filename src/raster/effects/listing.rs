@@ -28,7 +28,9 @@ use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value
 use crate::raster::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
 use crate::simd::Lanes8;
-use crate::span::list::{Records, SpanList, SpanNumbers, SpanSums, Target};
+use crate::span::list::SpanList;
+use crate::span::records::{RecordColumns, Records};
+use crate::span::target::Target;
 use crate::span::texture::Levels;
 
 /// Position of a span in its face, packed into two u32.
@@ -171,9 +173,9 @@ pub(super) struct FacePlanes8 {
 /// The data of listed spans and of their faces: reused memory.
 #[derive(Clone, Debug)]
 pub(super) struct SpanData {
-    pub(super) numbers: SpanNumbers<NUMBERS>,
-    pub(super) coordinates: SpanNumbers<COORDINATES>,
-    sums: SpanSums<SUMS>,
+    pub(super) numbers: RecordColumns<i32, NUMBERS>,
+    pub(super) coordinates: RecordColumns<i32, COORDINATES>,
+    sums: RecordColumns<i64, SUMS>,
     planes: [FacePlanes8; Batches::COUNT],
 }
 
@@ -247,15 +249,15 @@ pub(super) struct ListedFaces<'a> {
 
 impl SpanData {
     pub(super) fn new() -> Self {
-        let (numbers, coordinates, sums) = (SpanNumbers::NONE, SpanNumbers::NONE, SpanSums::NONE);
+        let (numbers, coordinates, sums) = (RecordColumns::new(), RecordColumns::new(), RecordColumns::new());
         Self { numbers, coordinates, sums, planes: <[FacePlanes8; Batches::COUNT]>::default() }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
     #[inline(always)]
     pub(super) fn sums(&self, record: usize) -> [f64; SUMS] {
-        let [u, v, d] = self.sums.of(record);
-        [f64::from_bits(u.cast_unsigned()), f64::from_bits(v.cast_unsigned()), f64::from_bits(d.cast_unsigned())]
+        let of = |i: usize| f64::from_bits(self.sums.of(record, i).cast_unsigned());
+        [of(0), of(1), of(2)]
     }
 
     /// The planes of a face's batch, and the face's lane.
@@ -426,13 +428,16 @@ impl<'a> EffectSpans<'a> {
                 let number = (seed - row.origin) / RESEED;
                 let mark = Mark::of_walked([number, row.last - seed], [seed, row.y]);
                 let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
-                self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3]);
+                self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3].map(u32::cast_signed));
                 match texture {
                     Some(WalkedTexture::Affine([u, v])) => {
                         let starts = [u, v].map(|plane| plane.start(seed, row.y));
                         // Modulo 2³²: texels repeat.
                         let steps = [u, v].map(|plane| plane.step() as u32);
-                        self.listed.data.coordinates.set(record, [starts[0], starts[1], steps[0], steps[1]]);
+                        self.listed
+                            .data
+                            .coordinates
+                            .set(record, [starts[0], starts[1], steps[0], steps[1]].map(u32::cast_signed));
                     }
                     Some(WalkedTexture::OnFace(coordinates)) => {
                         let sums = coordinates.sums(seed, row.y).map(|sum| sum.to_bits().cast_signed());
@@ -482,12 +487,15 @@ impl Shades8 for EffectSpans<'_> {
         let Wanted { shade, values, slots, reseeds, texture, .. } = *wanted;
         let inverse = &setup.inverse;
         if shade {
-            numbers.put(s, record, 2, value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds));
+            s.store_i32(value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds), numbers.eight(record, 2));
         }
         for (slot, value) in values.iter().enumerate().take(slots) {
             if let Some(value) = value {
                 let reseeds = reseeds || !matches!(value, Value::Channel(_));
-                numbers.put(s, record, 3 + slot, value_in(s, lane, (&planes.values[slot], inverse), j, parts, reseeds));
+                s.store_i32(
+                    value_in(s, lane, (&planes.values[slot], inverse), j, parts, reseeds),
+                    numbers.eight(record, 3 + slot),
+                );
             }
         }
         let skipped = s.sub_i32(s.low_bits(parts.start), seed);
@@ -497,19 +505,19 @@ impl Shades8 for EffectSpans<'_> {
         let mark = s.or_i32(batches.faces(s, lane), s.sub_i32(seed, row));
         let mark = s.or_i32(mark, s.shl_i32(last, 13));
         let number = s.low_bits(s.add(j, s.splat_f64(ROUND_MAGIC)));
-        numbers.put(s, record, 0, mark);
-        numbers.put(s, record, 1, s.or_i32(seed, s.shl_i32(number, 16)));
+        s.store_i32(mark, numbers.eight(record, 0));
+        s.store_i32(s.or_i32(seed, s.shl_i32(number, 16)), numbers.eight(record, 1));
         match texture {
             Some(Mapping::Affine) => {
                 let [u, v] = planes.affine.starts(s, lane, (j, parts.seed), [seed, number]);
                 let [du, dv] = planes.affine.steps(s, lane);
                 for (i, coordinate) in [u, v, du, dv].into_iter().enumerate() {
-                    coordinates.put(s, record, i, coordinate);
+                    s.store_i32(coordinate, coordinates.eight(record, i));
                 }
             }
             Some(_) => {
                 for (i, sum) in planes.perspective.starts(s, lane, j, parts.seed).into_iter().enumerate() {
-                    sums.put(s, record, i, s.bits(sum));
+                    s.store_i64(s.bits(sum), sums.eight(record, i));
                 }
             }
             None => {}
@@ -520,7 +528,7 @@ impl Shades8 for EffectSpans<'_> {
     }
 
     #[inline(always)]
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, target: &mut Target<'_>) {
+    fn draw<const DEPTHS: bool>(&mut self, list: &mut SpanList, target: &mut Target<'_>) {
         self.draw_spans(list, target);
     }
 }

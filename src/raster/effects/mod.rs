@@ -73,6 +73,7 @@ mod shades;
 mod spans;
 mod texture;
 
+use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 pub use self::batch::{EffectBatch, EffectFace};
@@ -90,7 +91,8 @@ use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 pub use crate::lanes::{Lanes, Points};
 use crate::simd::{Lanes8, compiled_for_each_level};
-use crate::span::list::{Span, SpanList, Target, Written};
+use crate::span::list::{Span, SpanList};
+use crate::span::target::{Target, Written};
 pub use crate::span::texture::{Levels, Texels, TexelsError};
 use crate::span::{Kernel, lookup, lookup_row};
 

@@ -16,7 +16,8 @@ use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
-use crate::span::list::{SpanList, Target};
+use crate::span::list::SpanList;
+use crate::span::target::Target;
 use crate::span::texture::PerspectiveSums;
 
 /// A span and the starts of its values.
@@ -75,7 +76,7 @@ impl Shades8 for Recorder<'_> {
         self.spans.fill_of(s, lane, setup, ends, parts)
     }
 
-    fn draw<S: Lanes8, const DEPTHS: bool>(&mut self, _: S, list: &mut SpanList, _: &mut Target<'_>) {
+    fn draw<const DEPTHS: bool>(&mut self, list: &mut SpanList, _: &mut Target<'_>) {
         let (listed, mut first, mut offsets) = (&self.spans.listed, 0, [0; SpanList::CAPACITY + 1]);
         while first < list.count() {
             let spans = Spans::of(listed, list, first, &mut offsets);

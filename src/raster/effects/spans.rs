@@ -16,7 +16,8 @@ use crate::simd::Portable;
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
-use crate::span::list::{self, SpanDepth, SpanDepths, SpanList};
+use crate::span::list::{self, SpanDepths, SpanList};
+use crate::span::target::SpanDepth;
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
 
 /// The most pixels of a span.
@@ -155,7 +156,7 @@ impl<'a> Spans<'a> {
     #[inline(always)]
     fn mark(&self, i: usize) -> Mark {
         let record = self.record(i);
-        Mark([self.data.numbers.of(record, 0), self.data.numbers.of(record, 1)])
+        Mark([0, 1].map(|i| self.data.numbers.of(record, i).cast_unsigned()))
     }
 
     /// The face of span `i`, among those whose planes are stored.
@@ -224,7 +225,7 @@ impl<'a> Spans<'a> {
     /// The first shade of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn first_shade(&self, i: usize) -> u32 {
-        self.data.numbers.of(self.record(i), 2)
+        self.data.numbers.of(self.record(i), 2).cast_unsigned()
     }
 
     /// The linear values of span `i` that this tint reads.
@@ -237,14 +238,14 @@ impl<'a> Spans<'a> {
     /// The start of a value of span `i`, with the step in the upper half.
     #[inline(always)]
     pub(super) fn value(&self, value: Value, i: usize) -> u32 {
-        self.data.numbers.of(self.record(i), 3 + value.slot())
+        self.data.numbers.of(self.record(i), 3 + value.slot()).cast_unsigned()
     }
 
     /// u and v at the first pixel of span `i`, and their change per pixel, where the texture is linear on the screen.
     #[inline(always)]
     pub(super) fn affine_start(&self, i: usize) -> [[u32; 2]; 2] {
         let record = self.record(i);
-        let of = |k: usize| self.data.coordinates.of(record, k);
+        let of = |k: usize| self.data.coordinates.of(record, k).cast_unsigned();
         [[of(0), of(1)], [of(2), of(3)]]
     }
 

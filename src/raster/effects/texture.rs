@@ -497,7 +497,8 @@ mod tests {
     use crate::raster::reference::texture::{depth, exact};
     use crate::raster::reference::weights::Weights;
     use crate::raster::vertex::Vertex;
-    use crate::span::list::{SpanList, Target};
+    use crate::span::list::SpanList;
+    use crate::span::target::Target;
     use crate::span::texture::Levels;
     use crate::span::texture::PerspectiveSums;
 

@@ -15,10 +15,12 @@
 //! by 0.003.
 
 use super::cover::SortedTriangle;
+use super::shade::RESEED;
 use super::weights::{Weights, in_f64};
 use crate::fixed::HAS_F64;
 use crate::lanes::three;
-use crate::span::hyperbolic::{fill_estimated_quotients, fill_quotients, floor_quotient};
+use crate::simd::BASELINE;
+use crate::span::hyperbolic::{fill_estimated_blocks, fill_quotients};
 
 /// The perspective-correct shades of a triangle.
 #[derive(Clone, Copy, Debug)]
@@ -70,16 +72,18 @@ impl HyperbolicPlane {
 
     /// The bytes from pixel (`x`, `y`) on, all of whose centres lie in the triangle.
     pub(in crate::raster) fn fill(&self, x: i32, y: i32, pixels: &mut [u8]) {
-        if let Some([n, d]) = self.estimates(x, y, 128, pixels.len()) {
-            return fill_estimated_quotients(pixels, n, d, |k| {
-                // A column.
-                let (n, d) = self.quotient(x + k as i32, y);
-                // At most 255: the nearest byte to a mean of shades.
-                floor_quotient(n, d) as u8
-            });
+        // Columns of a frame.
+        for (piece, x) in pixels.chunks_mut(RESEED as usize).zip((x..).step_by(RESEED as usize)) {
+            let (mut bytes, length) = ([0; RESEED as usize], piece.len());
+            if let Some([n, d]) = self.estimates(x, y, 128, length)
+                && fill_estimated_blocks(BASELINE, (&mut bytes, length), n, d)
+            {
+                piece.copy_from_slice(&bytes[..length]);
+            } else {
+                let ((n, d), (dn, dd)) = (self.quotient(x, y), self.step());
+                fill_quotients(piece, n, dn, d, dd);
+            }
         }
-        let ((n, d), (dn, dd)) = (self.quotient(x, y), self.step());
-        fill_quotients(pixels, n, dn, d, dd);
     }
 
     /// Numerator and divisor in f64 at a pixel, and their changes per pixel: their quotients over a row of this many

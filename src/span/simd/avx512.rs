@@ -7,7 +7,8 @@
 use core::arch::x86_64::*;
 use core::hint::black_box;
 
-use super::super::list::{Span, SpanDepth, SpanList};
+use super::super::list::{Span, SpanList};
+use super::super::target::SpanDepth;
 use crate::simd::Avx512;
 
 /// Pixels of a vector.
@@ -123,18 +124,9 @@ unsafe fn each(pixels: *mut u8, spans: &SpanList) {
     }
 }
 
-/// Fills every span of a list where it is nearer. Returns the number of pixels written.
-pub(crate) fn fill_spans_nearer(_: Avx512, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList) -> u32 {
-    if !spans.are_inside(pixels) || !spans.are_inside_cells(cells) {
-        return 0;
-    }
-    // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
-    unsafe { each_nearer::<false>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, |_| (0, 0)) }
-}
-
-/// Fills every span of a list where it is nearer, with shades in 16.16: `shades` returns the first shade and the step.
-/// Returns the number of pixels written.
-pub(crate) fn fill_spans_16_16(
+/// Fills every span of a list where it is nearer; with `FIXED16`, with shades in 16.16, of which `shades` returns the
+/// first and the step. Returns the number of pixels written.
+pub(crate) fn fill_spans_nearer<const FIXED16: bool>(
     _: Avx512,
     pixels: &mut [u8],
     cells: &mut [u32],
@@ -145,7 +137,7 @@ pub(crate) fn fill_spans_16_16(
         return 0;
     }
     // SAFETY: the token proves that the processor has AVX-512; all spans lie inside the pixels and cells.
-    unsafe { each_nearer::<true>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, shades) }
+    unsafe { each_nearer::<FIXED16>(pixels.as_mut_ptr(), cells.as_mut_ptr(), spans, shades) }
 }
 
 /// Fills every span where it is nearer; with `FIXED16`, by the shades in 16.16 that `shades` returns.

@@ -10,7 +10,8 @@
 use core::arch::x86_64::*;
 
 use super::super::depth::{fill_nearer, fill_nearer_16_16};
-use super::super::list::{Span, SpanDepth, SpanList};
+use super::super::list::{Span, SpanList};
+use super::super::target::SpanDepth;
 use crate::simd::{Avx2, FIRST_LANES};
 
 /// Pixels per iteration.
@@ -36,21 +37,19 @@ pub(crate) fn fill_spans_16_16(
     shades: impl Fn(u32) -> (u32, u32),
 ) -> u32 {
     // SAFETY: the token proves that the processor has AVX2.
-    unsafe { fill_16_16(avx2, pixels, cells, spans, shades) }
-}
-
-#[target_feature(enable = "avx2")]
-fn fill_16_16(
-    avx2: Avx2,
-    pixels: &mut [u8],
-    cells: &mut [u32],
-    spans: &SpanList,
-    shades: impl Fn(u32) -> (u32, u32),
-) -> u32 {
-    fill(avx2, pixels, cells, spans, |span| {
-        let (start, step) = shades(span.fill);
-        Own::Fixed16(start, step)
-    })
+    unsafe {
+        fill(
+            avx2,
+            pixels,
+            cells,
+            spans,
+            #[inline(always)]
+            |span| {
+                let (start, step) = shades(span.fill);
+                Own::Fixed16(start, step)
+            },
+        )
+    }
 }
 
 /// The fill of a span.

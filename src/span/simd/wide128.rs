@@ -1,5 +1,5 @@
-//! Sixteen pixels at a time with 128-bit vectors, for ARM and WebAssembly: the kernel of `sse2`, written with the
-//! operations of each.
+//! Sixteen pixels at a time with 128-bit vectors, for ARM, WebAssembly, and processors without a kernel of their own:
+//! the kernel of `sse2`, written with the operations of each.
 
 /// Even and odd shades of sixteen pixels, as described in the module `simd`.
 pub(super) trait Block: Copy {
@@ -36,10 +36,55 @@ pub(super) fn fill<B: Block>(row: &mut [u8], shade: u16, step: u16) {
     }
 }
 
+/// Plain arrays that the compiler vectorises, for processors without a kernel of their own.
+pub(in super::super) mod arrays {
+    use super::super::super::portable;
+    use crate::lanes::{LANES, each};
+
+    /// The length from which the compiler's own vectors of the portable loop are faster: on x86-64 9.7 ns at 160 pixels
+    /// against 30 here, the same at 100, and 26 against 15 at random lengths of 1 to 64.
+    const LONG: usize = 128;
+
+    #[derive(Clone, Copy)]
+    struct Block {
+        even: [u16; LANES],
+        odd: [u16; LANES],
+    }
+
+    impl super::Block for Block {
+        #[inline]
+        fn new(shade: u16, step: u16) -> Self {
+            // At most 14.
+            let even = each!(j => shade.wrapping_add(step.wrapping_mul(2 * j as u16)));
+            Self { even, odd: each!(j => even[j].wrapping_add(step)) }
+        }
+
+        #[inline]
+        fn raised(self, by: u16) -> Self {
+            let Self { even, odd } = &self;
+            Self { even: each!(j => even[j].wrapping_add(by)), odd: each!(j => odd[j].wrapping_add(by)) }
+        }
+
+        #[inline]
+        fn store(self, to: &mut [u8; 16]) {
+            let (pairs, _) = to.as_chunks_mut::<2>();
+            for (j, pair) in pairs.iter_mut().enumerate() {
+                *pair = (self.even[j] >> 8 | self.odd[j] & 0xFF00).to_le_bytes();
+            }
+        }
+    }
+
+    pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
+        match row.len() >= LONG {
+            true => portable::fill(row, shade, step),
+            false => super::fill::<Block>(row, shade, step),
+        }
+    }
+}
+
 /// 64-bit ARM, all of which has NEON.
 #[cfg(simd_neon)]
 pub(in super::super) mod neon {
-    use super::super::super::list::SpanList;
     use core::arch::aarch64::*;
 
     #[derive(Clone, Copy)]
@@ -80,17 +125,11 @@ pub(in super::super) mod neon {
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         super::fill::<Block>(row, shade, step);
     }
-
-    /// Fills every span of a list.
-    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
-        spans.each(pixels, fill);
-    }
 }
 
 /// WebAssembly with 128-bit vectors.
 #[cfg(simd_wasm)]
 pub(in super::super) mod wasm {
-    use super::super::super::list::SpanList;
     use core::arch::wasm32::*;
 
     #[derive(Clone, Copy)]
@@ -123,10 +162,5 @@ pub(in super::super) mod wasm {
 
     pub(crate) fn fill(row: &mut [u8], shade: u16, step: u16) {
         super::fill::<Block>(row, shade, step);
-    }
-
-    /// Fills every span of a list.
-    pub(crate) fn fill_spans(pixels: &mut [u8], spans: &SpanList) {
-        spans.each(pixels, fill);
     }
 }
