@@ -148,14 +148,6 @@ impl I24F8 {
     pub const fn round_from_i16f16(pixels: I16F16) -> Self {
         Self(((pixels.0 as i64 + 128) >> 8) as i32)
     }
-
-    /// The first pixel whose centre is at or to the right of (below) this coordinate: `ceil(x − ½)`.
-    #[must_use]
-    #[inline]
-    pub const fn first_centre(self) -> i32 {
-        // ceil((u − 128) / 256) = floor((u + 127) / 256); u is at most 2²⁰ in a raster vertex.
-        self.0.saturating_add(Self::HALF - 1) >> 8
-    }
 }
 
 /// A shade, 0 to 255 + 255/256, in 1/256 shade: 8 integer bits, 8 fractional bits. In the 1994 loop
@@ -326,14 +318,6 @@ mod tests {
     fn what_does_not_fit_is_refused() {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 8_388_608.0, -8_388_609.0] {
             assert_eq!(I24F8::round_from_f64(bad), None, "{bad}");
-        }
-    }
-
-    #[test]
-    fn first_centre_is_the_ceiling_of_x_less_a_half() {
-        for units in -2000..2000 {
-            let naive = (-100..100).find(|p| p * 256 + 128 >= units);
-            assert_eq!(Some(I24F8(units).first_centre()), naive, "{units}");
         }
     }
 

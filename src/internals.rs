@@ -56,6 +56,8 @@ pub mod raster {
     modules! { raster:
         /// Clipping of triangles.
         clip
+        /// Which pixels belong to a triangle.
+        fill_rule
         /// Stages over spans: texture, fog, channels, blending, dithering, per-pixel light.
         effects
         /// The scan-line method.

@@ -235,6 +235,29 @@ impl<'a> Picks<'a> {
     }
 }
 
+/// Triangles, and those of them that are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PickedTriangles<'a> {
+    pub(crate) triangles: &'a Triangles<'a>,
+    pub(crate) picks: Picks<'a>,
+}
+
+impl<'a> PickedTriangles<'a> {
+    /// Picks `first` to `end`, which must exist.
+    #[inline(always)]
+    pub(super) fn range(&self, first: usize, end: usize) -> Self {
+        Self { picks: self.picks.range(first, end), ..*self }
+    }
+
+    /// The vertices of pick `k`.
+    #[inline]
+    pub(crate) fn vertices(&self, k: usize) -> [Vertex; 3] {
+        let pick = self.picks.get(k);
+        let flat = self.picks.flat_shade(k);
+        three(self.triangles.corners(pick), |i| self.triangles.columns.vertex(i, pick.side(), flat))
+    }
+}
+
 impl Triangles<'_> {
     /// No triangles.
     #[cfg(feature = "alloc")]
@@ -255,14 +278,6 @@ impl Triangles<'_> {
     #[inline(always)]
     pub(crate) fn corners(&self, pick: Pick) -> [usize; 3] {
         three(self.indices[pick.index()], |i| i as usize)
-    }
-
-    /// The vertices of pick `k`.
-    #[inline]
-    pub(crate) fn vertices(&self, picks: &Picks<'_>, k: usize) -> [Vertex; 3] {
-        let pick = picks.get(k);
-        let flat = picks.flat_shade(k);
-        three(self.corners(pick), |i| self.columns.vertex(i, pick.side(), flat))
     }
 }
 

@@ -3,9 +3,9 @@
 //! they are set up.
 
 use super::columns::ScreenPos;
+use super::fill_rule::{cover_none_of_four, first_centre_of_each};
 use super::frame::Rect;
 use super::pick::{CHUNK, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, Pick};
-use super::setup::{cover_none_of_four, first_centre};
 use crate::fixed::HAS_F64;
 use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
@@ -247,8 +247,8 @@ impl<S: Lanes8> Bounds<S> {
     #[inline(always)]
     fn of(s: S, x: [S::I32; 3], y: [S::I32; 3]) -> Self {
         let (x, y) = (ends(s, x), ends(s, y));
-        let columns = [first_centre(s, x[0]), first_centre(s, x[1])];
-        let rows = [first_centre(s, y[0]), first_centre(s, y[1])];
+        let columns = [first_centre_of_each(s, x[0]), first_centre_of_each(s, x[1])];
+        let rows = [first_centre_of_each(s, y[0]), first_centre_of_each(s, y[1])];
         Self { x, y, columns, rows }
     }
 
@@ -327,6 +327,7 @@ mod tests {
     use super::*;
     use crate::fixed::{I24F8, U8F8};
     use crate::raster::clip::doubled_area;
+    use crate::raster::fill_rule::first_centre;
     use crate::raster::{Frame, Interpolation, Raster, Vertex};
     use crate::span::Kernel;
     use alloc::vec::Vec;
@@ -430,7 +431,7 @@ mod tests {
                 }
                 // The pixel centres between the corners, as a range with an exclusive end.
                 let centres = |units: fn(&Vertex) -> I24F8| {
-                    let [a, b, c] = vertices.each_ref().map(|v| units(v).first_centre());
+                    let [a, b, c] = vertices.each_ref().map(|v| first_centre(units(v)));
                     (a.min(b).min(c), a.max(b).max(c))
                 };
                 // A tiny triangle may cover only pixels beyond the frame.

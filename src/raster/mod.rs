@@ -30,17 +30,20 @@
 // | `vertex` | the input: a `Vertex` is checked on construction |
 // | `clip` | clipping before the projection, and the triangles that remain |
 // | `frame` | the bytes, whole or in bands of rows; the clip rectangle |
+// | `fill_rule` | which pixels belong to a triangle |
 // | `reference` | one triangle in integers, the definition: which pixels, which byte, which depth |
-// | `interpolation` | the list of shadings |
+// | `interpolation`, `row_shader` | the list of shadings, and the bytes of a row by each |
 // | `vintage` | coverage and shades as the sources print them |
 // | `depth` | depth buffers |
 // | `shade_trace` | start, step and sum of a single pixel, for inspection |
-// | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 // | `triangle` | one triangle from vertices to bytes: `Raster::triangle` |
-// | `columns`, `cull`, `setup`, `rows`, `spans` | many triangles at a time, by indices into columns of vertex values |
+// | `columns`, `pick`, `cull`, `setup`, `rows`, `batches` | many triangles at a time, by indices into columns of vertex values |
+// | `shaded`, `setup_texture` | set-up and rows of other shadings than 8.8, and of textures |
+// | `effects` | texture, fog, channels, blending, dither, light at every pixel: stages over spans |
 // | `triangles` | many triangles given as vertices, `Raster::triangles`, or by index, `Raster::indexed` |
 // | `scan_line` | a whole frame of triangles, each pixel written once |
 
+pub(crate) mod batches;
 pub(crate) mod clip;
 pub(crate) mod columns;
 pub(crate) mod cull;
@@ -51,6 +54,7 @@ mod draw_target;
 #[cfg(feature = "alloc")]
 pub mod effects;
 mod error;
+pub(crate) mod fill_rule;
 pub(crate) mod frame;
 pub(crate) mod interpolation;
 pub(crate) mod pick;
@@ -65,7 +69,6 @@ mod setup_texture;
 #[cfg(feature = "alloc")]
 pub(crate) mod shade_trace;
 pub(crate) mod shaded;
-pub(crate) mod spans;
 pub(crate) mod triangle;
 pub(crate) mod triangles;
 pub(crate) mod vertex;

@@ -165,6 +165,12 @@ pub(super) trait Shades8 {
     /// True if a shade and its step are enough to fill a span.
     const IS_LINEAR: bool;
 
+    /// Returns whether rows are split into pieces of 64 pixels, at which shades are reseeded.
+    #[inline(always)]
+    fn is_in_pieces(&self) -> bool {
+        true
+    }
+
     /// The batches whose planes and records are stored, if spans need them to be filled.
     fn batches(&mut self) -> Option<&mut Batches>;
 
@@ -213,18 +219,24 @@ pub(super) trait Shades8 {
 /// Linear shades in 8.8, or a single shade per triangle, which needs no plane: all of its rows start with it.
 pub(super) struct Linear {
     is_flat: bool,
+    in_pieces: bool,
     /// Single shades, with the half that rounds them; the steps, in the upper halves, are 0.
     shades: Ints,
 }
 
 impl Linear {
-    pub(super) const fn new(is_flat: bool) -> Self {
-        Self { is_flat, shades: [0; LANES] }
+    pub(super) const fn new(is_flat: bool, in_pieces: bool) -> Self {
+        Self { is_flat, in_pieces, shades: [0; LANES] }
     }
 }
 
 impl Shades8 for Linear {
     const IS_LINEAR: bool = true;
+
+    #[inline(always)]
+    fn is_in_pieces(&self) -> bool {
+        self.in_pieces
+    }
 
     #[inline(always)]
     fn batches(&mut self) -> Option<&mut Batches> {

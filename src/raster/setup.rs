@@ -36,7 +36,8 @@
 //! more than 2⁻²⁸·¹², from the middle between two integers. The quotient is below 2²³·¹, and off by at most 2⁻⁵² of
 //! that: less than 2⁻²⁸·⁹.
 
-use super::columns::{Columns, Picks, Triangles, eight_corners};
+use super::columns::{Columns, PickedTriangles, Triangles, eight_corners};
+use super::fill_rule::first_centre_of_each;
 use super::pick::Pick;
 use super::reference::depth::DepthPlane;
 use crate::fixed::ROUND_MAGIC;
@@ -73,13 +74,13 @@ impl Corners8 {
 
     /// Reads the first eight of these triangles, with depths only if `DEPTHS`.
     #[inline(always)]
-    pub(super) fn gather<const DEPTHS: bool>(&mut self, triangles: &Triangles<'_>, picks: &Picks<'_>) {
+    pub(super) fn gather<const DEPTHS: bool>(&mut self, &PickedTriangles { triangles, picks }: &PickedTriangles<'_>) {
         let Columns { at, depth, shade, .. } = triangles.columns;
         // Sliced to one length, so that a vertex's index is bounds-checked once.
         let vertices = at.len().min(depth.len()).min(shade.len());
         let (at, depth, shade) = (&at[..vertices], &depth[..vertices], &shade[..vertices]);
         let are_flat = !picks.flat.is_empty();
-        if let Some(first) = triangles.consecutive(picks)
+        if let Some(first) = triangles.consecutive(&picks)
             && !are_flat
             && self.load(triangles, first).is_some()
         {
@@ -259,9 +260,9 @@ impl TriangleSetup8 {
         // have to pack three more lists, and these would have to be gathered here.
         let top = s.min_i32(s.min_i32(ay, by), cy);
         let bottom = s.max_i32(s.max_i32(ay, by), cy);
-        let column = first_centre(s, s.min_i32(s.min_i32(ax, bx), cx));
-        let row = first_centre(s, top);
-        let rows = s.sub_i32(first_centre(s, bottom), row);
+        let column = first_centre_of_each(s, s.min_i32(s.min_i32(ax, bx), cx));
+        let row = first_centre_of_each(s, top);
+        let rows = s.sub_i32(first_centre_of_each(s, bottom), row);
         // A column and a row are below 4,096, the pitch is at most 2¹⁶.
         let down = s.sub_i32(row, s.splat_i32(layout.first_row as i32));
         let (pitch, width) = (s.splat_i32(layout.pitch as i32), s.splat_i32(layout.width as i32));
@@ -441,65 +442,6 @@ impl<S: Lanes8> Order<S> {
         let middle = s.sub_i32(s.sub_i32(s.add_i32(s.add_i32(a, b), c), first), last);
         [first, middle, last]
     }
-}
-
-/// `I24F8::first_centre`, of coordinates of at most 2²⁰.
-#[inline(always)]
-pub(super) fn first_centre<S: Lanes8>(s: S, units: S::I32) -> S::I32 {
-    s.shr_i32(s.add_i32(units, s.splat_i32(127)), 8)
-}
-
-/// Triangles that cover none of four pixels: the one at the origin, its right neighbour, and the
-/// two below. The result is valid only if the corners are less than 1,024 units away.
-///
-/// ```text
-/// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
-/// ```
-///
-/// A point on an edge lies inside if the edge is a left or a top one; otherwise E minus 1 makes it negative.
-#[inline(always)]
-pub(super) fn cover_none_of_four<S: Lanes8>(
-    s: S,
-    a: (S::I32, S::I32),
-    b: (S::I32, S::I32),
-    c: (S::I32, S::I32),
-) -> S::Mask {
-    let (ab, bc, ca) = (cross(s, a, b), cross(s, b, c), cross(s, c, a));
-    // Twice the area; −1 if it is negative.
-    let turned = s.shr_i32(s.add_i32(s.add_i32(ab, bc), ca), 31);
-    let ab = at_four(s, ab, a, b, turned);
-    let bc = at_four(s, bc, b, c, turned);
-    let ca = at_four(s, ca, c, a, turned);
-    let mut none = s.splat_i32(-1);
-    for pixel in 0..4 {
-        none = s.and_i32(none, s.or_i32(s.or_i32(ab[pixel], bc[pixel]), ca[pixel]));
-    }
-    s.is_greater(s.splat_i32(0), none)
-}
-
-/// The edge function at the origin.
-#[inline(always)]
-fn cross<S: Lanes8>(s: S, (ax, ay): (S::I32, S::I32), (bx, by): (S::I32, S::I32)) -> S::I32 {
-    s.sub_i32(s.mul_i32(ax, by), s.mul_i32(ay, bx))
-}
-
-/// The edge function at the four pixels, negative outside.
-#[inline(always)]
-fn at_four<S: Lanes8>(s: S, e: S::I32, from: (S::I32, S::I32), to: (S::I32, S::I32), turned: S::I32) -> [S::I32; 4] {
-    let dx = turn(s, s.sub_i32(to.0, from.0), turned);
-    let dy = turn(s, s.sub_i32(to.1, from.1), turned);
-    // Up, or level and to the right: −1.
-    let is_in = s.shr_i32(s.sub_i32(s.shl_i32(dy, 10), dx), 31);
-    let first = s.sub_i32(s.sub_i32(turn(s, e, turned), s.splat_i32(1)), is_in);
-    let (right, down) = (s.shl_i32(dy, 8), s.shl_i32(dx, 8));
-    let below = s.add_i32(first, down);
-    [first, s.sub_i32(first, right), below, s.sub_i32(below, right)]
-}
-
-/// `n`, negated where `turned` is −1.
-#[inline(always)]
-fn turn<S: Lanes8>(s: S, n: S::I32, turned: S::I32) -> S::I32 {
-    s.sub_i32(s.xor_i32(n, turned), turned)
 }
 
 /// The least and the greatest of three.

@@ -12,7 +12,7 @@
 //! triangles get a divisor below 0, which decides nothing. A triangle's coordinates are relative to the texel of a
 //! corner, its base, so that f32 resolves them if the other corners are near.
 
-use super::columns::{Picks, Triangles, eight_corners};
+use super::columns::{PickedTriangles, eight_corners};
 use super::pick::Pick;
 use super::reference::cover::SortedTriangle;
 use super::reference::level;
@@ -28,10 +28,10 @@ use crate::span::texture::{PerspectiveSums, singles_margin};
 /// Texture coordinates u and v of each corner of up to eight triangles, in texels with 16 fraction bits; 0 in lanes
 /// without a triangle.
 #[inline(always)]
-pub(super) fn texture_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>) -> [[Ints; 3]; 2] {
+pub(super) fn texture_of_corners(&PickedTriangles { triangles, picks }: &PickedTriangles<'_>) -> [[Ints; 3]; 2] {
     let mut gathered = [[[0; LANES]; 3]; 2];
     let column = triangles.columns.effects.texture;
-    if let Some(texture) = triangles.consecutive(picks).and_then(|first| eight_corners(column, first)) {
+    if let Some(texture) = triangles.consecutive(&picks).and_then(|first| eight_corners(column, first)) {
         for corner in 0..3 {
             for lane in 0..LANES {
                 (gathered[0][corner][lane], gathered[1][corner][lane]) = texture[corner][lane].into();

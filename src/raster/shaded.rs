@@ -32,7 +32,7 @@
 //! pixel are exact sums: for a small triangle, whose differences of y are at most 2¹², in 64 bits, as products of
 //! depths and shades are below 2⁴⁸. Larger ones are set up by [`FloatPlane`].
 
-use super::columns::{Picks, Triangles};
+use super::columns::PickedTriangles;
 use super::interpolation::Interpolation;
 use super::reference::cover::SortedTriangle;
 #[cfg(feature = "alloc")]
@@ -107,15 +107,14 @@ impl Default for ShadedData {
 
 /// Triangles whose spans may be listed.
 struct ShadedFaces<'a> {
-    triangles: &'a Triangles<'a>,
-    picks: Picks<'a>,
+    of: PickedTriangles<'a>,
     layout: FrameLayout,
     batches: Batches,
 }
 
 impl ShadedFaces<'_> {
     fn triangle(&self, face: usize) -> SortedTriangle {
-        SortedTriangle::new(&self.triangles.vertices(&self.picks, self.batches.first + face))
+        SortedTriangle::new(&self.of.vertices(self.batches.first + face))
     }
 
     /// The perspective-correct bytes of a span, followed by arbitrary ones to fill blocks of eight. Returns false if
@@ -177,16 +176,11 @@ pub(super) struct Shaded8<'a> {
 
 impl<'a> Shaded8<'a> {
     #[inline(always)]
-    pub(super) fn new(
-        kind: Kind,
-        (triangles, picks): (&'a Triangles<'a>, Picks<'a>),
-        layout: FrameLayout,
-        data: &'a mut ShadedData,
-    ) -> Self {
+    pub(super) fn new(kind: Kind, of: PickedTriangles<'a>, layout: FrameLayout, data: &'a mut ShadedData) -> Self {
         let floats = [0.0; LANES];
         Self {
             kind,
-            listed: ShadedFaces { triangles, picks, layout, batches: Batches::NONE },
+            listed: ShadedFaces { of, layout, batches: Batches::NONE },
             data,
             fraction: floats,
             area: floats,

@@ -1,13 +1,13 @@
 //! Many triangles at once, given as vertices.
 
-use super::columns::{Columns, Picks, ScreenPos, Triangles};
+use super::batches::SpanScratch;
+use super::columns::{Columns, PickedTriangles, Picks, ScreenPos, Triangles};
 use super::cull::{PickList, cull, cull_eights, pick};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::pick::{CHUNK, Pick};
-use super::spans::SpanScratch;
 use super::triangle::Raster;
 use super::vertex::{Vertex, misses_centres};
 use crate::fixed::{I24F8, IS_COMPACT, U8F8};
@@ -275,7 +275,7 @@ impl<D: Cell> Raster<'_, D> {
         };
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &const { corner_indices::<N>() }, by_corner: Some(N) };
-        self.picks(&triangles, picks, *drawn_by, spans, None)
+        self.picks(PickedTriangles { triangles: &triangles, picks }, *drawn_by, spans, None)
     }
 
     /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are those of
@@ -340,7 +340,12 @@ impl<D: Cell> Raster<'_, D> {
             let picks = list.as_slice();
             let flat = one_shade.as_ref().map_or(&[][..], |shades| &shades[..picks.len()]);
             let triangles = Triangles { columns, indices: of_list, by_corner: None };
-            drawn += self.picks(&triangles, Picks { picks, flat }, drawn_by(interpolation), &mut spans, None);
+            drawn += self.picks(
+                PickedTriangles { triangles: &triangles, picks: Picks { picks, flat } },
+                drawn_by(interpolation),
+                &mut spans,
+                None,
+            );
         }
         drawn
     }
@@ -366,7 +371,12 @@ impl<D: Cell> Raster<'_, D> {
         pick(self.kernel.simd_level(), &mut list, 0, &masks, 1);
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &INDICES, by_corner: None };
-        self.picks(&triangles, picks, drawn_by(interpolation), &mut SpanScratch::default(), None)
+        self.picks(
+            PickedTriangles { triangles: &triangles, picks },
+            drawn_by(interpolation),
+            &mut SpanScratch::default(),
+            None,
+        )
     }
 }
 

@@ -1,6 +1,7 @@
 //! Vertices of the raster: projected ones inside the guard band.
 
 use super::error::RasterError;
+use super::fill_rule::first_centre;
 use crate::fixed::{I24F8, U8F8};
 
 /// A projected vertex: position in 1/256 pixel, shade, depth. Every vertex is valid, so the raster
@@ -127,7 +128,7 @@ impl Vertex {
 #[inline]
 pub(super) fn misses_centres(corners: &[Vertex; 3]) -> bool {
     let [a, b, c] = corners;
-    let no_centre = |[a, b, c]: [I24F8; 3]| a.min(b).min(c).first_centre() == a.max(b).max(c).first_centre();
+    let no_centre = |[a, b, c]: [I24F8; 3]| first_centre(a.min(b).min(c)) == first_centre(a.max(b).max(c));
     // Both are computed without a branch in between: a branch for each would be mispredicted twice as often.
     no_centre([a.x(), b.x(), c.x()]) | no_centre([a.y(), b.y(), c.y()])
 }

@@ -4,10 +4,10 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::columns::VertexColumns;
 use super::geometry::Geometry;
 use super::surface_material::SurfaceMaterial;
 use super::vertex::{light_eight, shade_of_intensities};
+use super::vertex_columns::VertexColumns;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, three};
 use crate::light::{Lights, both_sides};

@@ -4,19 +4,19 @@
 use alloc::vec::Vec;
 use core::slice;
 
-use super::integer::IntegerScratch;
-use super::pick::{Look, PickScratch, Picker, Run};
+use super::picker::{Look, PickScratch, Picker, Run};
 use super::pipelines::Pipelines;
 use super::stats::Shares;
+use super::to_integers::IntegerScratch;
 use super::{Cache, HiddenSurfaces, Renderer, Stats};
 use crate::fixed::U8F8;
 use crate::plan::far_to_near;
-use crate::raster::columns::{Picks, Triangles};
+use crate::raster::batches::SpanScratch;
+use crate::raster::columns::{PickedTriangles, Picks, Triangles};
 use crate::raster::effects::EffectScratch;
 use crate::raster::pick::{CHUNK, Pick};
 use crate::raster::scan_line::Lists;
 use crate::raster::shaded::ShadedData;
-use crate::raster::spans::SpanScratch;
 use crate::raster::{DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use crate::scene::Scene;
 use crate::span::Kernel;
@@ -91,12 +91,12 @@ struct Painter<'a, 'b> {
 
 impl Painter<'_, '_> {
     /// Draws faces of one look, in order.
-    fn draw(&mut self, object: usize, look: Look, triangles: &Triangles<'_>, picks: Picks<'_>) -> DrawStats {
+    fn draw(&mut self, object: usize, look: Look, triangles: PickedTriangles<'_>) -> DrawStats {
         if !look.effects {
-            return self.raster.picks(triangles, picks, look.interpolation(), self.spans, Some(self.shaded));
+            return self.raster.picks(triangles, look.interpolation(), self.spans, Some(self.shaded));
         }
         let (raster, scratch) = (&mut *self.raster, &mut *self.scratch);
-        self.pipelines.with(object, look, |pipeline| raster.picks_with_effects(triangles, picks, pipeline, scratch))
+        self.pipelines.with(object, look, |pipeline| raster.picks_with_effects(triangles, pipeline, scratch))
     }
 
     /// Draws faces far to near.
@@ -122,7 +122,8 @@ impl Painter<'_, '_> {
                 }
                 let flat = if first.flat.is_some() { &flat[..part.len()] } else { &[] };
                 let picks = Picks { picks: &picks[..part.len()], flat };
-                drawn += self.draw(first.object as usize, first.look, &triangles, picks);
+                let picked = PickedTriangles { triangles: &triangles, picks };
+                drawn += self.draw(first.object as usize, first.look, picked);
             }
         }
         drawn
@@ -171,7 +172,7 @@ impl Renderer {
             } else if deferred {
                 faces.extend(DeferredFace::of(object, run));
             } else {
-                drawn += painter.draw(object, run.look, &run.triangles, run.picks);
+                drawn += painter.draw(object, run.look, run.picked());
             }
         });
         let of = (scene, &*cache, scratch.pick.added.triangles());
@@ -232,7 +233,8 @@ fn scan_line(
 ) -> DrawStats {
     triangles.clear();
     triangles.extend(faces.iter().map(|face| {
-        let vertices = face.triangles(scene, cache, added).vertices(&face.picks(), 0);
+        let triangles = face.triangles(scene, cache, added);
+        let vertices = PickedTriangles { triangles: &triangles, picks: face.picks() }.vertices(0);
         (vertices, if face.look.effects { Interpolation::default() } else { face.look.interpolation() })
     }));
     let Painter { pipelines, raster, scratch, .. } = painter;
@@ -243,7 +245,8 @@ fn scan_line(
         }
         let triangles = face.triangles(scene, cache, added);
         pipelines.with(face.object as usize, face.look, |pipeline| {
-            scratch.paint_row((&triangles, face.picks(), 0), pipeline, row, pixels, kernel, drawn);
+            let face = PickedTriangles { triangles: &triangles, picks: face.picks() };
+            scratch.paint_row((face, 0), pipeline, row, pixels, kernel, drawn);
         });
         true
     })

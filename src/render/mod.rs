@@ -7,46 +7,46 @@
 // | file | what |
 // |---|---|
 // | `object` | the cached state of an object: its vertices, and their inputs |
-// | `vertex`, `columns` | vertex stages (projection, light, effects); their results in columns |
+// | `vertex`, `vertex_columns` | vertex stages (projection, light, effects); their results in columns |
 // | `tessellate`, `edge_map` | faces split along their edges; a map from edges to numbers |
 // | `faces` | the input for an object's faces |
-// | `pick` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
+// | `picker` | which faces are drawn, and how; `clip` clips at the near plane and the guard band |
 // | `budget` | the error budget: the shading for each triangle |
 // | `hidden_surfaces` | hidden-surface methods: faces in scene order, with depths or without, far to near, or by rows |
 // | `surface_material`, `pixel_light`, `tables`, `pipelines` | the input for pixels |
-// | `integer` | a scene in 16.16 |
+// | `to_integers`, `integer_frame` | a scene in 16.16, and its frames |
 // | `pace` | the least error that fits in a time, independent of the renderer |
 // | `stats` | counts of a frame |
 // | `each_triangle` | every triangle of a frame with everything the raster would get, for the laboratory |
 
 mod budget;
 mod clip;
-mod columns;
 pub(crate) mod each_triangle;
 mod edge_map;
 mod error;
 mod faces;
 mod geometry;
 mod hidden_surfaces;
-mod integer;
 pub(crate) mod integer_frame;
 mod object;
 mod pace;
-mod pick;
+mod picker;
 mod pipelines;
 mod pixel_light;
 mod stats;
 mod surface_material;
 mod tables;
 mod tessellate;
+mod to_integers;
 mod vertex;
+mod vertex_columns;
 
 use alloc::vec::Vec;
 
 use self::hidden_surfaces::Scratch;
-use self::integer::IntegerPath;
 use self::object::ObjectState;
 use self::tables::Tables;
+use self::to_integers::IntegerPath;
 use crate::palette::{BIOS, Palette};
 use crate::plan::{
     self, Change, Effect, FaceCounts, FaceShading, Findings, Inputs, ObjectPlan, Overrides, Plan, decide,

@@ -5,13 +5,13 @@ use alloc::vec::Vec;
 
 use super::Stats;
 use super::budget::Budget;
-use super::columns::VertexColumns;
 use super::faces::{FacePoints, Faces, face_points};
 use super::geometry::Geometry;
 use super::pixel_light::{PixelLight, fill_normal_table};
 use super::surface_material::SurfaceMaterial;
 use super::tessellate::Tessellated;
 use super::vertex;
+use super::vertex_columns::VertexColumns;
 use crate::fixed::U8F8;
 use crate::light::{ConeBeam, LampBeam, Light, Lights, Material, SunBeam};
 use crate::mesh::Mesh;

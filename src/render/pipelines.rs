@@ -3,7 +3,7 @@
 use super::Cache;
 use super::budget::limits;
 use super::object::ObjectState;
-use super::pick::Look;
+use super::picker::Look;
 use super::pixel_light::PixelLight;
 use super::surface_material::SurfaceMaterial;
 use super::tables::{Image, Tables};

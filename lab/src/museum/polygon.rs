@@ -29,6 +29,7 @@ use std::fmt;
 use std::ops::Range;
 
 use mode13h::fixed::{I24F8, U8F8};
+use mode13h::internals::raster::fill_rule::first_centre;
 use mode13h::internals::raster::reference::quotient::Divisor;
 use mode13h::internals::raster::reference::shade::RESEED;
 use mode13h::raster::{DrawStats, Frame, Interpolation, Rect, Vertex};
@@ -165,7 +166,7 @@ fn fill_table(vertices: &[Vertex], winding: Winding, clip: Rect, table: &mut [Ta
         let is_down = from.y() < to.y();
         let (upper, lower) = if is_down { (from, to) } else { (to, from) };
         from = to;
-        let rows = upper.y().first_centre().max(clip_first)..lower.y().first_centre().min(clip_end);
+        let rows = first_centre(upper.y()).max(clip_first)..first_centre(lower.y()).min(clip_end);
         if rows.is_empty() {
             continue;
         }
@@ -243,8 +244,8 @@ pub fn draw(
         let Some(edges) = table.get((y - held.start) as usize) else { break };
         // A frame has at most 4,096 columns.
         let width = frame.width() as i32;
-        let origin = edges.left_x.first_centre().max(0);
-        let (x0, x1) = (origin.max(clip.x0 as i32), edges.right_x.first_centre().min(width).min(clip.x1 as i32));
+        let origin = first_centre(edges.left_x).max(0);
+        let (x0, x1) = (origin.max(clip.x0 as i32), first_centre(edges.right_x).min(width).min(clip.x1 as i32));
         let Some(pixels) = frame.row_mut(y) else { break };
         if x0 >= x1 {
             continue;

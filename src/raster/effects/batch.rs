@@ -7,7 +7,7 @@ use core::mem;
 use super::{Attributes, EffectScratch, PixelPipeline, ShadeSource};
 use crate::fixed::U8F8;
 use crate::lanes::LANES;
-use crate::raster::columns::{Columns, EffectColumns, LitColumn, Picks, ScreenPos, Triangles};
+use crate::raster::columns::{Columns, EffectColumns, LitColumn, PickedTriangles, Picks, ScreenPos, Triangles};
 use crate::raster::cull::PickList;
 use crate::raster::depth::Cell;
 use crate::raster::draw_stats::DrawStats;
@@ -196,7 +196,7 @@ impl<D: Cell> Raster<'_, D> {
                 Columns { at: at.as_flattened(), depth: depth.as_flattened(), shade: shade.as_flattened(), effects };
             let triangles = Triangles { columns, indices: &INDICES, by_corner: Some(CAPACITY) };
             let picks = Picks { picks: list.as_slice(), flat: &[] };
-            drawn += self.picks_with_effects(&triangles, picks, pipeline, scratch);
+            drawn += self.picks_with_effects(PickedTriangles { triangles: &triangles, picks }, pipeline, scratch);
         }
         drawn
     }

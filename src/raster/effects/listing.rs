@@ -14,7 +14,7 @@ use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
 use crate::lanes::{self, LANES, three};
 use crate::mapping::Mapping;
-use crate::raster::columns::{EffectColumns, Picks, Triangles, Value};
+use crate::raster::columns::{EffectColumns, PickedTriangles, Value};
 use crate::raster::interpolation::Interpolation;
 use crate::raster::pick::{Pick, SizeClass};
 use crate::raster::reference::cover::{Row, SortedTriangle};
@@ -82,24 +82,6 @@ const COORDINATES: usize = 4;
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
-/// Picked triangles as the stages read them, by their index among the picks.
-#[derive(Clone, Copy)]
-pub(super) struct Faces<'a> {
-    pub(super) triangles: &'a Triangles<'a>,
-    pub(super) picks: Picks<'a>,
-}
-
-impl<'a> Faces<'a> {
-    /// Face `k`, and its corners' values.
-    fn corners(&self, k: usize) -> FaceCorners<'a> {
-        let pick = self.picks.get(k);
-        let (triangle, order) = SortedTriangle::with_order(&self.triangles.vertices(&self.picks, k));
-        let of = self.triangles.corners(pick);
-        let (corners, flat) = (three(order, |corner| of[corner]), self.picks.flat.get(k).copied());
-        FaceCorners { triangle, corners, side: pick.side(), flat, columns: &self.triangles.columns.effects }
-    }
-}
-
 /// A face, and the values of its corners from top to bottom.
 #[derive(Clone, Copy)]
 pub(super) struct FaceCorners<'a> {
@@ -112,7 +94,16 @@ pub(super) struct FaceCorners<'a> {
     columns: &'a EffectColumns<'a>,
 }
 
-impl FaceCorners<'_> {
+impl<'a> FaceCorners<'a> {
+    /// Face `k` of these.
+    fn new(of: &PickedTriangles<'a>, k: usize) -> Self {
+        let pick = of.picks.get(k);
+        let (triangle, order) = SortedTriangle::with_order(&of.vertices(k));
+        let indices = of.triangles.corners(pick);
+        let (corners, flat) = (three(order, |corner| indices[corner]), of.picks.flat.get(k).copied());
+        Self { triangle, corners, side: pick.side(), flat, columns: &of.triangles.columns.effects }
+    }
+
     /// Texture coordinates: `i` is 0 for u, 1 for v.
     #[inline]
     pub(super) fn texture(&self, i: usize) -> [i32; 3] {
@@ -237,7 +228,7 @@ enum WalkedTexture {
 
 /// The spans of a list as the stages see them: their marks, and the planes of their faces.
 pub(super) struct ListedFaces<'a> {
-    pub(super) faces: Faces<'a>,
+    pub(super) faces: PickedTriangles<'a>,
     wanted: Wanted,
     pub(super) data: &'a mut SpanData,
     pub(super) batches: Batches,
@@ -273,22 +264,21 @@ impl ListedFaces<'_> {
     fn set_up_planes<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8, setup: &TriangleSetup8) {
         let Self { faces, wanted, data, batches, .. } = self;
         let faces = *faces;
-        let Faces { triangles, picks } = faces;
         let first = batches.first_pick();
-        let picks = &picks.range(first, picks.picks.len().min(first + LANES));
+        let eight = &faces.range(first, faces.picks.picks.len().min(first + LANES));
         let planes = &mut data.planes[batches.current()];
         (planes.column, planes.row) = (setup.column, setup.row);
         if let Some(mapping) = wanted.texture {
-            let of_corners = texture_of_corners(triangles, picks);
+            let of_corners = texture_of_corners(eight);
             match mapping {
                 Mapping::Affine => {
                     let fits = planes.affine.set_up(s, basis, &of_corners, wanted.last_level);
                     // Usually all are small and fit.
-                    let all_fit = fits & 0xFF == 0xFF && Pick::are_small(picks.picks);
+                    let all_fit = fits & 0xFF == 0xFF && Pick::are_small(eight.picks.picks);
                     let lanes = if all_fit { 0 } else { LANES };
-                    for (lane, &pick) in picks.picks.iter().take(lanes).enumerate() {
+                    for (lane, &pick) in eight.picks.picks.iter().take(lanes).enumerate() {
                         if Pick(pick).class() != SizeClass::Small || fits >> lane & 1 == 0 {
-                            let face = faces.corners(first + lane);
+                            let face = FaceCorners::new(&faces, first + lane);
                             let pixel = [setup.column[lane], setup.row[lane]];
                             let coordinates = [face.texture(0), face.texture(1)];
                             planes.affine.split(lane, &face.triangle, coordinates, pixel, wanted.last_level);
@@ -300,7 +290,7 @@ impl ListedFaces<'_> {
         }
         for (planes, value) in planes.values.iter_mut().zip(wanted.values) {
             if let Some(value) = value {
-                planes.set_up(s, basis, &value_of_corners(triangles, picks, value));
+                planes.set_up(s, basis, &value_of_corners(eight, value));
             }
         }
     }
@@ -316,7 +306,7 @@ impl ListedFaces<'_> {
     pub(super) fn corners(&self, face: usize) -> FaceCorners<'_> {
         match &self.walked {
             Some(WalkedFace { face, .. }) => *face,
-            None => self.faces.corners(self.batches.first + face),
+            None => FaceCorners::new(&self.faces, self.batches.first + face),
         }
     }
 
@@ -340,7 +330,7 @@ pub(in crate::raster) struct EffectSpans<'a> {
 impl<'a> EffectSpans<'a> {
     /// No spans yet, of these faces.
     pub(super) fn new(
-        faces: Faces<'a>,
+        faces: PickedTriangles<'a>,
         pipeline: &'a PixelPipeline<'a>,
         data: &'a mut SpanData,
         buffers: &'a mut Buffers,
@@ -365,7 +355,7 @@ impl<'a> EffectSpans<'a> {
 
     /// Begins face `k`, whose rows are added one by one.
     pub(super) fn walk(&mut self, k: usize, depth_base: u32) -> SortedTriangle {
-        let corners = self.listed.faces.corners(k);
+        let corners = FaceCorners::new(&self.listed.faces, k);
         let triangle = corners.triangle;
         let Wanted { texture, last_level, .. } = self.listed.wanted;
         let planes = &mut self.listed.data.planes[0];
@@ -552,7 +542,7 @@ fn value_in<S: Lanes8>(
 
 /// A value of the corners of up to eight triangles; 0 in lanes without a triangle.
 #[inline(always)]
-fn value_of_corners(triangles: &Triangles<'_>, picks: &Picks<'_>, value: Value) -> [Ints; 3] {
+fn value_of_corners(PickedTriangles { triangles, picks }: &PickedTriangles<'_>, value: Value) -> [Ints; 3] {
     let mut gathered = [[0; LANES]; 3];
     let columns = &triangles.columns.effects;
     for (lane, &pick) in picks.picks.iter().take(LANES).enumerate() {

@@ -77,16 +77,16 @@ use alloc::boxed::Box;
 use alloc::vec::Vec;
 
 pub use self::batch::{EffectBatch, EffectFace};
-use self::listing::{EffectSpans, Faces, ListedFaces, SpanData};
+use self::listing::{EffectSpans, ListedFaces, SpanData};
 pub use self::pipeline::{Limits, Mix, PixelLighting, PixelPipeline, SampleSpacing, ShadeSource, TextureStage};
 use self::spans::{ROOM, Shaded, Spans};
+use super::batches::{DrawArea, draw_triangles};
 pub use super::columns::Attributes;
-use super::columns::{Picks, Triangles, Value};
+use super::columns::{PickedTriangles, Value};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::pick::Pick;
 use super::reference::cover::Row;
-use super::spans::{DrawArea, Drawn, draw_triangles};
 use super::triangle::Raster;
 use crate::fixed::HAS_F64;
 pub use crate::lanes::{Lanes, Points};
@@ -146,7 +146,7 @@ impl EffectScratch {
     /// Paints one row of pick `k`, found by another method, into `pixels`, the frame's whole row.
     pub(crate) fn paint_row(
         &mut self,
-        (triangles, picks, k): (&Triangles<'_>, Picks<'_>, usize),
+        (triangles, k): (PickedTriangles<'_>, usize),
         pipeline: &PixelPipeline<'_>,
         row: &Row,
         pixels: &mut [u8],
@@ -156,7 +156,7 @@ impl EffectScratch {
         let ((list, data), buffers) = self.parts();
         let mut target = Target { pixels, cells: None, kernel };
         list.begin(&target, [0; 2]);
-        let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
+        let mut spans = EffectSpans::new(triangles, pipeline, data, buffers);
         spans.walk(k, 0);
         spans.add_row(row, list, &mut target);
         spans.draw_spans(list, &mut target);
@@ -266,7 +266,7 @@ compiled_for_each_level! {
     /// Draws triangles with effects; if there are cells, only their nearer pixels.
     #[inline(never)]
     fn draw_effects[][](
-        of: Drawn<'_>,
+        of: PickedTriangles<'_>,
         effects: (&mut EffectSpans<'_>, &mut SpanList),
         area: DrawArea,
         target: &mut Target<'_>,
@@ -276,7 +276,7 @@ compiled_for_each_level! {
 #[inline(always)]
 fn draw_effects_by<S: Lanes8>(
     s: S,
-    of: Drawn<'_>,
+    of: PickedTriangles<'_>,
     (spans, list): (&mut EffectSpans<'_>, &mut SpanList),
     area: DrawArea,
     target: &mut Target<'_>,
@@ -289,8 +289,7 @@ impl<D: Cell> Raster<'_, D> {
     #[inline(never)]
     pub(crate) fn picks_with_effects(
         &mut self,
-        triangles: &Triangles<'_>,
-        picks: Picks<'_>,
+        triangles: PickedTriangles<'_>,
         pipeline: &PixelPipeline<'_>,
         scratch: &mut EffectScratch,
     ) -> DrawStats {
@@ -299,17 +298,17 @@ impl<D: Cell> Raster<'_, D> {
         let fits = self.fits_lists();
         let mut drawn = DrawStats::default();
         let mut first = 0;
-        while first < picks.picks.len() {
-            let together = if HAS_F64 && fits { Pick::count_batched(&picks.picks[first..]) } else { 0 };
+        let picks = triangles.picks.picks;
+        while first < picks.len() {
+            let together = if HAS_F64 && fits { Pick::count_batched(&picks[first..]) } else { 0 };
             if together > 0 {
-                let picks = picks.range(first, first + together);
-                let spans = &mut EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
-                let of = Drawn { triangles, picks, in_pieces: true };
+                let of = triangles.range(first, first + together);
+                let spans = &mut EffectSpans::new(of, pipeline, data, buffers);
                 drawn += draw_effects(level, of, (spans, list), (layout, clip), &mut self.target());
                 first += together;
                 continue;
             }
-            let mut spans = EffectSpans::new(Faces { triangles, picks }, pipeline, data, buffers);
+            let mut spans = EffectSpans::new(triangles, pipeline, data, buffers);
             drawn += self.walk((&mut spans, list), first);
             first += 1;
         }

@@ -2,17 +2,17 @@
 
 use alloc::vec::Vec;
 
-use super::listing::{EffectSpans, Faces, SpanData};
+use super::listing::{EffectSpans, SpanData};
 use super::spans::{Span, Spans};
 use super::texture::exact_level;
 use super::{Buffers, PixelPipeline};
 use crate::mapping::Mapping;
-use crate::raster::columns::{Picks, Triangles};
+use crate::raster::batches::draw_triangles;
+use crate::raster::columns::PickedTriangles;
 use crate::raster::frame::Rect;
 use crate::raster::reference::texture::AffineLevel;
 use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8};
 use crate::raster::setup::{Corners8, FrameLayout, TriangleSetup8};
-use crate::raster::spans::{Drawn, draw_triangles};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::Kernel;
 use crate::span::depth::Cells;
@@ -102,11 +102,11 @@ impl Shades8 for Recorder<'_> {
 }
 
 compiled_for_each_level! {
-    fn record_at_level[][](of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 = record_by;
+    fn record_at_level[][](of: PickedTriangles<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 = record_by;
 }
 
 #[inline(always)]
-fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
+fn record_by<S: Lanes8>(s: S, of: PickedTriangles<'_>, recorder: &mut Recorder<'_>, clip: Rect) -> u32 {
     // All rows share the same pixels.
     let layout = FrameLayout { first_row: 0, pitch: 0, width: 0, depth_base: 0 };
     let (mut pixels, mut cells) = ([0; 4_096], [0_u32; 4_096]);
@@ -115,16 +115,11 @@ fn record_by<S: Lanes8>(s: S, of: Drawn<'_>, recorder: &mut Recorder<'_>, clip: 
 }
 
 /// The spans of faces, none of them unbatched, in a frame of 4,096 × 4,096 pixels.
-pub(super) fn record(
-    kernel: Kernel,
-    triangles: &Triangles<'_>,
-    picks: Picks<'_>,
-    pipeline: &PixelPipeline<'_>,
-) -> Vec<Recorded> {
+pub(super) fn record(kernel: Kernel, triangles: PickedTriangles<'_>, pipeline: &PixelPipeline<'_>) -> Vec<Recorded> {
     let (mut data, mut buffers) = (SpanData::new(), Buffers::default());
-    let spans = EffectSpans::new(Faces { triangles, picks }, pipeline, &mut data, &mut buffers);
+    let spans = EffectSpans::new(triangles, pipeline, &mut data, &mut buffers);
     let mut recorder = Recorder { spans, recorded: Vec::new() };
     let clip = Rect { x0: 0, y0: 0, x1: 4_096, y1: 4_096 };
-    record_at_level(kernel.simd_level(), Drawn { triangles, picks, in_pieces: true }, &mut recorder, clip);
+    record_at_level(kernel.simd_level(), triangles, &mut recorder, clip);
     recorder.recorded
 }

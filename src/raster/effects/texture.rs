@@ -482,9 +482,9 @@ mod tests {
     use super::*;
 
     use crate::fixed::{I24F8, U8F8};
-    use crate::raster::columns::{Columns, EffectColumns, Picks, ScreenPos, Triangles};
+    use crate::raster::columns::{Columns, EffectColumns, PickedTriangles, Picks, ScreenPos, Triangles};
     use crate::raster::cull::{PickList, cull, pick};
-    use crate::raster::effects::listing::{self, EffectSpans, Faces};
+    use crate::raster::effects::listing::{self, EffectSpans};
     use crate::raster::effects::recorded::record;
     use crate::raster::effects::{Buffers, PixelPipeline, ShadeSource};
     use crate::raster::frame::Rect;
@@ -631,7 +631,7 @@ mod tests {
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
                 let picks = list.as_slice();
-                for found in record(kernel, &all, Picks { picks, flat: &[] }, &pipeline) {
+                for found in record(kernel, PickedTriangles { triangles: &all, picks: Picks { picks, flat: &[] } }, &pipeline) {
                     let pick = Pick(picks[found.pick]);
                     let (triangle, texture) = &triangles[pick.index()];
                     let (x, y) = (found.span.x, found.span.y);
@@ -730,7 +730,9 @@ mod tests {
                 let masks = cull(kernel.simd_level(), &at, &indices, clip, false);
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
-                for recorded in record(kernel, &all_triangles, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                let picks = Picks { picks: list.as_slice(), flat: &[] };
+                let picked = PickedTriangles { triangles: &all_triangles, picks };
+                for recorded in record(kernel, picked, &pipeline) {
                     for (estimated, exact) in recorded.levels {
                         all.set(all.get() + 1);
                         decided.set(decided.get() + i32::from(estimated.is_some()));
@@ -782,7 +784,7 @@ mod tests {
             let pipeline = PixelPipeline { texture: Some(stage), ..PixelPipeline::PLAIN };
             let last = stage.levels.expect("it has some").last();
             let (mut memory, mut buffers) = (listing::SpanData::new(), Buffers::default());
-            let faces = Faces { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
+            let faces = PickedTriangles { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
             let mut of_face = EffectSpans::new(faces, &pipeline, &mut memory, &mut buffers);
             let (mut rows, clip) = (Vec::new(), Rect { x0: 0, y0: 0, x1: 320, y1: 200 });
             of_face.walk(0, 0).rows(320, clip, |row| rows.push(row));
@@ -851,7 +853,11 @@ mod tests {
                 let masks = cull(kernel.simd_level(), &at, &[[0, 1, 2]], clip, false);
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
-                for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                for found in record(
+                    kernel,
+                    PickedTriangles { triangles: &all, picks: Picks { picks: list.as_slice(), flat: &[] } },
+                    &pipeline,
+                ) {
                     let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
                     let image = OffsetLanes::of_level(BASELINE, (texels, 0));
                     let end = found.span.len.min(LANES);
@@ -913,7 +919,11 @@ mod tests {
                 let masks = cull(kernel.simd_level(), &at, &[[0, 1, 2]], clip, false);
                 let mut list = PickList::<16>::new();
                 pick(kernel.simd_level(), &mut list, 0, &masks, masks.covers);
-                for found in record(kernel, &all, Picks { picks: list.as_slice(), flat: &[] }, &pipeline) {
+                for found in record(
+                    kernel,
+                    PickedTriangles { triangles: &all, picks: Picks { picks: list.as_slice(), flat: &[] } },
+                    &pipeline,
+                ) {
                     let (mut offsets, end) = ([0; LANES], found.span.len.min(LANES));
                     // Only the other coordinate may be undecided.
                     let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];

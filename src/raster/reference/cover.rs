@@ -1,6 +1,7 @@
 //! Coverage: the pixels of a triangle, as rows from top to bottom.
 
 use super::edge::Edge;
+use crate::raster::fill_rule::first_centre;
 use crate::raster::frame::Rect;
 use crate::raster::vertex::Vertex;
 
@@ -81,14 +82,15 @@ impl SortedTriangle {
     pub fn extent(&self, clip: Rect) -> Option<core::ops::Range<i32>> {
         let [top, _, bottom] = &self.vertices;
         // The clip rectangle lies inside a frame of at most 4,096 pixels a side.
-        let first = top.y().first_centre().max(clip.y0 as i32);
-        let end = bottom.y().first_centre().min(clip.y1 as i32);
+        let first = first_centre(top.y()).max(clip.y0 as i32);
+        let end = first_centre(bottom.y()).min(clip.y1 as i32);
         if self.doubled_area == 0 || first >= end {
             return None;
         }
-        let (left, right) = self.vertices.iter().fold((i32::MAX, i32::MIN), |(low, high), v| {
-            (low.min(v.x().first_centre()), high.max(v.x().first_centre()))
-        });
+        let (left, right) = self
+            .vertices
+            .iter()
+            .fold((i32::MAX, i32::MIN), |(low, high), v| (low.min(first_centre(v.x())), high.max(first_centre(v.x()))));
         (left.max(clip.x0 as i32) < right.min(clip.x1 as i32)).then_some(first..end)
     }
 
@@ -130,7 +132,7 @@ impl RowWalk {
     #[inline]
     pub(in crate::raster) fn new(triangle: &SortedTriangle, rows: core::ops::Range<i32>) -> Self {
         let [top, middle, bottom] = triangle.vertices.each_ref().map(point);
-        let (y, split) = (rows.start, triangle.vertices[1].y().first_centre());
+        let (y, split) = (rows.start, first_centre(triangle.vertices[1].y()));
         let (from, to) = if y < split { (top, middle) } else { (middle, bottom) };
         let (long, short) = (Edge::at_row(top, bottom, y), Edge::at_row(from, to, y));
         Self { long, short, is_long_left: triangle.doubled_area > 0, y, split, end: rows.end }

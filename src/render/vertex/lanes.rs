@@ -10,8 +10,8 @@ use super::Geometry;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, each};
 use crate::light::{Lights, both_sides};
-use crate::render::columns::{ScreenPos, VertexColumns};
 use crate::render::surface_material::SurfaceMaterial;
+use crate::render::vertex_columns::{ScreenPos, VertexColumns};
 use crate::simd::{F32Lanes8, compiled_for_each_level};
 use crate::view::{Narrow, ObjectView};
 

@@ -5,9 +5,9 @@ use core::ops::Range;
 
 use glam::Vec3;
 
-use super::columns::{ScreenPos, VertexColumns};
 use super::geometry::Geometry;
 use super::surface_material::SurfaceMaterial;
+use super::vertex_columns::{ScreenPos, VertexColumns};
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, Points, three};
 use crate::light::Lights;

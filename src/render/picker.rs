@@ -6,15 +6,15 @@ use alloc::vec::Vec;
 use super::Stats;
 use super::budget::{Budget, FLOAT, LINEAR};
 use super::clip::{Corner, Progressions, clip};
-use super::columns::AddedTriangles;
 use super::faces::{Face, Faces};
 use super::stats::Shares;
+use super::vertex_columns::AddedTriangles;
 use crate::fixed::U8F8;
 use crate::lanes::{LANES, three};
 use crate::light::Blend;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;
-use crate::raster::columns::{Picks, ScreenPos, Triangles};
+use crate::raster::columns::{PickedTriangles, Picks, ScreenPos, Triangles};
 use crate::raster::cull::{CullMasks, PickList, cull, pick};
 use crate::raster::effects::Attributes;
 use crate::raster::pick::{CHUNK, Pick};
@@ -66,9 +66,14 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
+    /// The triangles that are drawn.
+    pub(super) fn picked(&self) -> PickedTriangles<'_> {
+        PickedTriangles { triangles: &self.triangles, picks: self.picks }
+    }
+
     /// The vertices of a pick, and the interpolation of their shades.
     pub(super) fn vertices(&self, k: usize) -> ([Vertex; 3], Interpolation) {
-        let vertices = self.triangles.vertices(&self.picks, k);
+        let vertices = self.picked().vertices(k);
         let flat = || Interpolation::Flat(vertices[0].shade().nearest());
         let interpolation = if self.look.one_shade { flat() } else { self.look.shading.interpolation() };
         (vertices, interpolation)

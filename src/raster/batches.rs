@@ -17,9 +17,10 @@
 //! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of
 //! calling it for each triangle in turn.
 
-use super::columns::{Picks, Triangles};
+use super::columns::{PickedTriangles, Triangles};
 use super::depth::{Cell, DepthBuffer};
 use super::draw_stats::DrawStats;
+use super::fill_rule::first_centre;
 use super::frame::Rect;
 use super::interpolation::Interpolation;
 use super::pick::{MAX_PIECES, MAX_WIDTH, Pick, SizeClass};
@@ -38,28 +39,6 @@ use crate::simd::{Lanes8, Level, compiled_for_each_level};
 use crate::span::list::SpanList;
 use crate::span::target::Target;
 
-/// Triangles, and whether their rows are split into pieces of 64 pixels, at which linear shades are
-/// reseeded.
-#[derive(Clone, Copy)]
-pub(super) struct Drawn<'a> {
-    pub(super) triangles: &'a Triangles<'a>,
-    pub(super) picks: Picks<'a>,
-    pub(super) in_pieces: bool,
-}
-
-impl Drawn<'_> {
-    /// The most pieces of a row of a large triangle.
-    #[inline(always)]
-    fn pieces(&self, pick: Pick) -> usize {
-        if !self.in_pieces {
-            return 1;
-        }
-        let [a, b, c] = three(self.triangles.corners(pick), |i| self.triangles.columns.at[i].x());
-        let [left, right] = [a.min(b).min(c), a.max(b).max(c)].map(|x| I24F8::from_bits(x).first_centre());
-        ((right - left - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
-    }
-}
-
 /// Memory for the spans of picked triangles, reused because clearing it takes 6 % of the time of a small object.
 #[derive(Debug)]
 pub(crate) struct SpanScratch(SpanList);
@@ -76,14 +55,14 @@ impl<D: Cell> Raster<'_, D> {
     /// clear their own.
     pub(crate) fn picks(
         &mut self,
-        triangles: &Triangles<'_>,
-        picks: Picks<'_>,
+        all: PickedTriangles<'_>,
         interpolation: Interpolation,
         SpanScratch(list): &mut SpanScratch,
         shaded: Option<&mut ShadedData>,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (layout, fits) = (self.layout(), self.fits_lists());
+        let picks = all.picks;
         let are_flat = !picks.flat.is_empty();
         let kind = Kind::of(interpolation).filter(|_| !are_flat);
         let in_pieces = match interpolation {
@@ -92,7 +71,7 @@ impl<D: Cell> Raster<'_, D> {
             _ if HAS_F64 && fits && kind.is_some() => true,
             _ => {
                 for k in 0..picks.picks.len() {
-                    drawn += self.triangle_by_rows(&triangles.vertices(&picks, k), interpolation);
+                    drawn += self.triangle_by_rows(&all.vertices(k), interpolation);
                 }
                 return drawn;
             }
@@ -103,7 +82,7 @@ impl<D: Cell> Raster<'_, D> {
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
             if together == 0 {
-                let vertices = triangles.vertices(&picks, first);
+                let vertices = all.vertices(first);
                 drawn += match kind {
                     Some(_) => self.triangle_by_rows(&vertices, interpolation),
                     None => self.list_rows(&vertices, in_pieces, layout, list),
@@ -113,13 +92,13 @@ impl<D: Cell> Raster<'_, D> {
             }
             let area = (layout, self.clip);
             let target = &mut self.target();
-            let of = Drawn { triangles, picks: picks.range(first, first + together), in_pieces };
+            let of = all.range(first, first + together);
             drawn += match kind {
                 Some(kind) => match &mut shaded {
                     Some(data) => draw_shaded(level, of, (kind, data), area, target, list),
                     None => draw_shaded(level, of, (kind, &mut ShadedData::default()), area, target, list),
                 },
-                None => draw_linear(level, of, area, target, list),
+                None => draw_linear(level, (of, in_pieces), area, target, list),
             };
             first += together;
         }
@@ -197,7 +176,13 @@ pub(super) type DrawArea = (FrameLayout, Rect);
 /// Like `draw_shaded`, it has no type parameters, so that it is compiled in this crate rather than
 /// in every crate that draws.
 #[inline(never)]
-fn draw_linear(level: Level, of: Drawn<'_>, area: DrawArea, target: &mut Target<'_>, list: &mut SpanList) -> DrawStats {
+fn draw_linear(
+    level: Level,
+    of: (PickedTriangles<'_>, bool),
+    area: DrawArea,
+    target: &mut Target<'_>,
+    list: &mut SpanList,
+) -> DrawStats {
     match target.cells.is_some() {
         false => draw_at_level::<false>(level, of, area, target, list),
         true => draw_at_level::<true>(level, of, area, target, list),
@@ -208,7 +193,7 @@ compiled_for_each_level! {
     /// Draws triangles; with `DEPTHS`, only where they are nearer than the cells.
     #[inline(never)]
     fn draw_at_level[const DEPTHS: bool][DEPTHS](
-        of: Drawn<'_>,
+        of: (PickedTriangles<'_>, bool),
         area: DrawArea,
         target: &mut Target<'_>,
         list: &mut SpanList,
@@ -218,19 +203,19 @@ compiled_for_each_level! {
 #[inline(always)]
 fn draw_by<S: Lanes8, const DEPTHS: bool>(
     s: S,
-    of: Drawn<'_>,
+    (of, in_pieces): (PickedTriangles<'_>, bool),
     area: DrawArea,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    draw_triangles::<S, _, DEPTHS>(s, of, area, target, &mut Linear::new(!of.picks.flat.is_empty()), list)
+    draw_triangles::<S, _, DEPTHS>(s, of, area, target, &mut Linear::new(!of.picks.flat.is_empty(), in_pieces), list)
 }
 
 compiled_for_each_level! {
     /// Draws triangles with a shading other than a linear one in 8.8; if there are cells, only where they are nearer.
     #[inline(never)]
     fn draw_shaded[][](
-        of: Drawn<'_>,
+        of: PickedTriangles<'_>,
         kind: (Kind, &mut ShadedData),
         area: DrawArea,
         target: &mut Target<'_>,
@@ -241,27 +226,27 @@ compiled_for_each_level! {
 #[inline(always)]
 fn draw_shaded_by<S: Lanes8>(
     s: S,
-    of: Drawn<'_>,
+    of: PickedTriangles<'_>,
     (kind, data): (Kind, &mut ShadedData),
     area: DrawArea,
     target: &mut Target<'_>,
     list: &mut SpanList,
 ) -> DrawStats {
-    let mut shades = Shaded8::new(kind, (of.triangles, of.picks), area.0, data);
+    let mut shades = Shaded8::new(kind, of, area.0, data);
     draw_triangles::<S, _, true>(s, of, area, target, &mut shades, list)
 }
 
 /// [`Corners8::gather`], not compiled for each level: it is called once for many triangles.
 #[inline(never)]
-fn gather_first<const DEPTHS: bool>(corners: &mut Corners8, triangles: &Triangles<'_>, picks: &Picks<'_>) {
-    corners.gather::<DEPTHS>(triangles, picks);
+fn gather_first<const DEPTHS: bool>(corners: &mut Corners8, of: &PickedTriangles<'_>) {
+    corners.gather::<DEPTHS>(of);
 }
 
 /// Draws triangles; if there are cells, only where they are nearer. `DEPTHS` may be false if there are none.
 #[inline(always)]
 pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
-    of: Drawn<'_>,
+    of: PickedTriangles<'_>,
     (layout, clip): DrawArea,
     target: &mut Target<'_>,
     shades: &mut P,
@@ -275,10 +260,9 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let has_depths = rows::has_depths::<P, DEPTHS>(list);
     let mut setup = TriangleSetup8::NONE;
     let mut corners = Corners8::NONE;
-    let (triangles, picks) = (of.triangles, of.picks);
-    let count = picks.picks.len();
-    gather_first::<DEPTHS>(&mut corners, triangles, &picks);
-    for (number, eight) in picks.picks.chunks(LANES).enumerate() {
+    let count = of.picks.picks.len();
+    gather_first::<DEPTHS>(&mut corners, &of);
+    for (number, eight) in of.picks.picks.chunks(LANES).enumerate() {
         if shades.is_full() {
             shades.draw::<DEPTHS>(list, target);
         }
@@ -286,8 +270,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
         shades.set_up(s, &corners, &mut setup, (layout, has_depths));
         // Gather the next eight before this eight's rows enter the list: vector loads stall when their elements have
         // just been stored one by one. (3 to 6 % of the time of triangles of 0.6 pixels.)
-        let next = picks.range(count.min((number + 1) * LANES), count);
-        corners.gather::<DEPTHS>(triangles, &next);
+        corners.gather::<DEPTHS>(&of.range(count.min((number + 1) * LANES), count));
         // Only for the last triangles: filling calls the C library.
         if eight.len() < LANES {
             setup.rows[eight.len()..].fill(0);
@@ -330,11 +313,19 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     DrawStats::of_spans(list.counts(), has_depths)
 }
 
+/// The most pieces of a row of a large triangle.
+#[inline(always)]
+fn most_pieces(triangles: &Triangles<'_>, pick: Pick) -> usize {
+    let [a, b, c] = three(triangles.corners(pick), |i| triangles.columns.at[i].x());
+    let [left, right] = [a.min(b).min(c), a.max(b).max(c)].map(|x| first_centre(I24F8::from_bits(x)));
+    ((right - left - 1) as usize / RESEED as usize + 1).clamp(1, MAX_PIECES)
+}
+
 /// Lists the rows of triangle `i` of batch `number`, which is not a small one.
 #[inline(always)]
 fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     s: S,
-    of: Drawn<'_>,
+    of: PickedTriangles<'_>,
     (number, i): (usize, usize),
     setup: &mut TriangleSetup8,
     (layout, clip): DrawArea,
@@ -344,12 +335,12 @@ fn list_large<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     let k = number * LANES + i;
     let pick = Pick(of.picks.picks[k]);
     if rows::has_depths::<P, DEPTHS>(list) {
-        let plane = DepthPlane::new(&SortedTriangle::new(&of.triangles.vertices(&of.picks, k)));
+        let plane = DepthPlane::new(&SortedTriangle::new(&of.vertices(k)));
         setup.put_depth_plane(i, &plane.raised_by(layout.depth_base));
     }
     shades.set_up_large(i);
     let clip = (pick.class() == SizeClass::CrossesClip).then_some(clip);
-    let pieces = of.pieces(pick);
+    let pieces = if shades.is_in_pieces() { most_pieces(of.triangles, pick) } else { 1 };
     // Otherwise a row is one piece, however long.
     let longest = if pieces > 1 { RESEED } else { MAX_WIDTH / 256 };
     let (mut first, mut end) = (0, setup.rows[i % LANES]);
@@ -375,7 +366,7 @@ mod tests {
 
     use proptest::prelude::*;
 
-    use super::super::columns::{Columns, ScreenPos};
+    use super::super::columns::{Columns, Picks, ScreenPos};
     use super::super::cull::{PickList, cull, pick};
     use super::*;
     use crate::fixed::U8F8;
@@ -421,12 +412,13 @@ mod tests {
                     let of_pick = |&pick: &u32| [U8F8::from_bits(triangles[Pick(pick).index()].1); 3];
                     let flat: Vec<[U8F8; 3]> = list.as_slice().iter().map(of_pick).collect();
                     let picks = Picks { picks: list.as_slice(), flat: &flat };
+                    let of = PickedTriangles { triangles: &all, picks };
                     let mut drawn = DrawStats::default();
                     if are_together {
-                        drawn = raster.picks(&all, picks, Interpolation::Gouraud88, &mut SpanScratch::default(), None);
+                        drawn = raster.picks(of, Interpolation::Gouraud88, &mut SpanScratch::default(), None);
                     } else {
                         for k in 0..flat.len() {
-                            drawn += raster.triangle_by_rows(&all.vertices(&picks, k), Interpolation::Gouraud88);
+                            drawn += raster.triangle_by_rows(&of.vertices(k), Interpolation::Gouraud88);
                         }
                     }
                     (drawn, bytes, cells)
