@@ -389,7 +389,7 @@ impl Shades8 for Shaded8<'_> {
         let record = self.listed.batches.records.begin();
         // At most 255.
         let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS));
-        // At most 255.
+        // Below 64.
         let face = self.listed.batches.faces(s, lane);
         let ShadedData { steps, numbers, sums: starts, .. } = &mut *self.data;
         let steps = &steps[self.listed.batches.current()];

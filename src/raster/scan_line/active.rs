@@ -8,8 +8,7 @@ use crate::raster::reference::depth::DepthPlane;
 use crate::raster::row_shader::RowShader;
 use crate::raster::vertex::Vertex;
 
-/// A face whose rows are being walked: the two edges that cross the current row. Opaque; the caller lends a slice of
-/// them ([`Lists`](super::Lists)).
+/// A face whose rows are being walked: the two edges that cross the current row.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct EdgePair {
     triangle: SortedTriangle,
