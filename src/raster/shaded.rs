@@ -38,12 +38,12 @@ use super::reference::cover::SortedTriangle;
 #[cfg(feature = "alloc")]
 use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
-use super::reference::shade::RESEED;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8, numerator_at};
 use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ends};
 use crate::fixed::{HAS_F64, ROUND_MAGIC};
 use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
+use crate::span::PIECE;
 #[cfg(feature = "alloc")]
 use crate::span::float::fill_float_blocks;
 use crate::span::hyperbolic::fill_estimated_blocks;
@@ -81,8 +81,6 @@ struct Steps8 {
     /// In 16.16, the steps. In f32, the bits of the same changes, and of the least and the greatest shade.
     words: [Ints; 4],
 }
-
-const _: () = assert!(SpanBytes::LENGTH == RESEED as usize, "a piece of a row is a span");
 
 /// Memory for listed spans: the steps of their triangles, their records and their bytes. Within an error budget a torus
 /// is drawn in some seventy runs; clearing this for each would take 0.9 % of a frame's instructions.
@@ -135,7 +133,7 @@ impl ShadedFaces<'_> {
         let FrameLayout { first_row, pitch, .. } = self.layout;
         // In a frame: below 4,096.
         let (x, y) = ((span.at % pitch) as i32, (first_row + span.at / pitch) as i32);
-        plane.fill(x, y, &mut bytes[..(span.length as usize).min(SpanBytes::LENGTH)]);
+        plane.fill(x, y, &mut bytes[..(span.length as usize).min(PIECE)]);
     }
 
     /// The bytes of a span in f32, followed by arbitrary ones to fill blocks of eight.
@@ -482,4 +480,4 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     }
 }
 
-type Bytes = [u8; SpanBytes::LENGTH];
+type Bytes = [u8; PIECE];

@@ -1,10 +1,9 @@
 //! Lists of spans as values, through which tests and other machines draw as batches do.
 
-use super::Kernel;
 use super::depth::Cell;
 use super::list::{DepthSteps, SpanList, Spans8};
-use super::records::SpanBytes;
 use super::target::{SpanDepth, Target, Written};
+use super::{Kernel, PIECE};
 use crate::lanes::LANES;
 use crate::simd::{Lanes8, Portable, compiled_for_each_level};
 
@@ -88,10 +87,10 @@ pub fn write_nearer<D: Cell>(
     let span = |first: usize| {
         let cell = first as u32;
         let depth = SpanDepth { cell, z: z.wrapping_add(dz.wrapping_mul(first as i64)) << 8, dz: dz << 8 };
-        let n = (length - first).min(SpanBytes::LENGTH);
+        let n = (length - first).min(PIECE);
         write(kernel.simd_level(), target, (Written { at: cell, bytes: &bytes[first..], length: n }, depth), keeps)
     };
-    (0..length).step_by(SpanBytes::LENGTH).map(span).sum()
+    (0..length).step_by(PIECE).map(span).sum()
 }
 
 compiled_for_each_level! {

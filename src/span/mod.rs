@@ -86,6 +86,9 @@ pub(crate) use lookup::lookup;
 #[cfg(feature = "alloc")]
 pub(crate) use lookup::lookup_row;
 
+/// The most pixels of a piece of a row. Rows whose shades are reseeded, and all rows with effects, are split into pieces.
+pub(crate) const PIECE: usize = 64;
+
 /// The bare assembly entries, for the tests that call them with garbage in their registers and read their instructions.
 /// Not part of the interface.
 #[cfg(any(asm_x86_64, asm_i686))]

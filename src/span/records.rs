@@ -1,5 +1,6 @@
 //! Records of listed spans: what a shade and its step cannot say.
 
+use super::PIECE;
 use crate::lanes::LANES;
 
 /// The records in use, of spans that are filled with more than a linear shade. The list has the index of a span's
@@ -67,24 +68,22 @@ impl<T: Copy + Default, const N: usize> RecordColumns<T, N> {
 
 /// Bytes of some spans of a list, 64 each.
 #[derive(Debug)]
-pub(crate) struct SpanBytes([[u8; SpanBytes::LENGTH]; SpanBytes::COUNT]);
+pub(crate) struct SpanBytes([[u8; PIECE]; SpanBytes::COUNT]);
 
 impl SpanBytes {
-    /// The most pixels of a span.
-    pub(crate) const LENGTH: usize = 64;
     /// The number of spans at a time.
     pub(crate) const COUNT: usize = 16;
 
-    pub(crate) const NONE: Self = Self([[0; Self::LENGTH]; Self::COUNT]);
+    pub(crate) const NONE: Self = Self([[0; PIECE]; Self::COUNT]);
 
     /// The bytes of span `k` among these.
     #[inline(always)]
-    pub(crate) fn of(&self, k: usize) -> &[u8; Self::LENGTH] {
+    pub(crate) fn of(&self, k: usize) -> &[u8; PIECE] {
         &self.0[k % Self::COUNT]
     }
 
     #[inline(always)]
-    pub(crate) fn of_mut(&mut self, k: usize) -> &mut [u8; Self::LENGTH] {
+    pub(crate) fn of_mut(&mut self, k: usize) -> &mut [u8; PIECE] {
         &mut self.0[k % Self::COUNT]
     }
 }

@@ -2,18 +2,18 @@
 
 use super::listing::FaceCorners;
 use super::pipeline::{PixelLighting, SampleSpacing};
-use super::spans::{LONGEST, ROOM, Span, Spans};
+use super::spans::{ROOM, Span, Spans};
 use crate::lanes::{LANES, Lanes, Points, each};
 use crate::raster::reference::weights::{Weights, in_f64};
 use crate::raster::row_shader::to_bytes;
 use crate::simd::compiled_for_each_level;
-use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::{self, Numerators};
+use crate::span::{Kernel, PIECE};
 
 /// The most lit pixels of a span of which only some are lit, its end included, rounded up to whole
 /// vectors.
-const KNOTS: usize = (LONGEST / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
+const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.
 #[inline]

@@ -8,7 +8,6 @@ use crate::raster::columns::Value;
 use crate::raster::interpolation::Interpolation;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
-use crate::raster::reference::shade::RESEED;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
 use crate::raster::row_shader::RowShader;
 #[cfg(test)]
@@ -19,9 +18,6 @@ use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::{self, SpanDepths, SpanList};
 use crate::span::target::SpanDepth;
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
-
-/// The most pixels of a span.
-pub(super) const LONGEST: usize = RESEED as usize;
 
 /// The most pixels that pass through the stages together, and the room for them when written eight at a time.
 pub(super) const PIXELS: usize = 4_096;

@@ -36,9 +36,10 @@
 
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
+use crate::span::PIECE;
 
 /// Pixels between two exact starts of a reseeded span.
-pub const RESEED: i32 = 64;
+pub const RESEED: i32 = PIECE as i32;
 
 /// The shade plane of a triangle.
 #[derive(Clone, Copy, Debug)]

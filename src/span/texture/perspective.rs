@@ -6,6 +6,7 @@ use super::tint::NUMBERS_OF_PAIR;
 use crate::fixed::{HAS_F64, ROUND_MAGIC, floor_of_wide};
 use crate::lanes::{LANES, NUMBERS};
 use crate::simd::{BASELINE, F32Lanes8, Lanes8};
+use crate::span::PIECE;
 
 /// Fills `row` with texels in exact perspective, as the raster's loops do at the lowest level.
 ///
@@ -56,9 +57,6 @@ pub fn fill_perspective(
         show_along(BASELINE, (piece, n), texels, ((), &mut ()), offsets);
     }
 }
-
-/// The most pixels of a piece of a row.
-const PIECE: usize = 64;
 
 /// The greatest ratio of a row's largest divisor to the smallest for which an estimate decides.
 const MAX_RATIO: f64 = 32_768.0;
