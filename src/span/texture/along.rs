@@ -20,7 +20,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     if texels.bytes.is_empty() {
         return;
     }
-    let last = texels.bytes.len() - 1;
+    let image = (texels, texels.bytes.len() - 1);
     let (mut rest, mut left) = (row, length);
     while left > 0 {
         let offsets = offsets.next();
@@ -32,7 +32,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
             }
             let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
             for (k, pixel) in rest.iter_mut().take(left).enumerate() {
-                *pixel = texel(tint, rows, offsets, (texels, last), k % LANES);
+                *pixel = texel(tint, rows, offsets, image, k % LANES);
             }
             return;
         };
@@ -42,12 +42,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
         {
             let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
             let mask = u32::MAX >> (8 * (FOUR - left));
-            let bytes = u32::from_le_bytes([
-                texel(tint, rows, offsets, (texels, last), 0),
-                texel(tint, rows, offsets, (texels, last), 1),
-                texel(tint, rows, offsets, (texels, last), 2),
-                texel(tint, rows, offsets, (texels, last), 3),
-            ]);
+            let bytes = four_texels(tint, rows, offsets, image, 0);
             *row = (bytes & mask | u32::from_le_bytes(*row) & !mask).to_le_bytes();
             return;
         }
@@ -55,12 +50,12 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
         if left < LANES {
             let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets));
             let mask = u64::MAX >> (8 * (LANES - left));
-            let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, (texels, last), k));
+            let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, image, k));
             *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
             return;
         }
         let (rows, offsets) = (tint.rows::<S, true>(s, along, block), s.low_words_in_bulk(offsets));
-        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, (texels, last), k)));
+        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, image, k)));
         (rest, left) = (behind, left - LANES);
     }
 }
@@ -126,12 +121,7 @@ pub(crate) fn show_block<S: Lanes8, T: Tint, const IN_BULK: bool>(
         let Some(four) = block.first_chunk_mut() else { return };
         // The lower half.
         let stay = stays as u32;
-        let bytes = u32::from_le_bytes([
-            texel(tint, rows, offsets, image, 0),
-            texel(tint, rows, offsets, image, 1),
-            texel(tint, rows, offsets, image, 2),
-            texel(tint, rows, offsets, image, 3),
-        ]);
+        let bytes = four_texels(tint, rows, offsets, image, 0);
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     } else {
         let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets.next()));
@@ -157,18 +147,7 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     let (image, offsets) = ((texels, texels.bytes.len() - 1), s.low_words(offsets));
     // Tints that read pixels are not shown in pairs.
     let rows = tint.rows::<S, false>(s, &mut tint.begin(s, values), &[0; LANES]);
-    let low = u32::from_le_bytes([
-        texel(tint, rows, offsets, image, 0),
-        texel(tint, rows, offsets, image, 1),
-        texel(tint, rows, offsets, image, 2),
-        texel(tint, rows, offsets, image, 3),
-    ]);
-    let high = u32::from_le_bytes([
-        texel(tint, rows, offsets, image, 4),
-        texel(tint, rows, offsets, image, 5),
-        texel(tint, rows, offsets, image, 6),
-        texel(tint, rows, offsets, image, 7),
-    ]);
+    let [low, high] = [four_texels(tint, rows, offsets, image, 0), four_texels(tint, rows, offsets, image, FOUR)];
     for (at, bytes, stay) in [(a, low, stays as u32), (b, high, (stays >> 32) as u32)] {
         let Some(four) = all.get_mut(at..at + FOUR).and_then(<[u8]>::first_chunk_mut) else { return };
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
@@ -179,6 +158,23 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
 #[inline(always)]
 fn texel<T: Tint>(tint: T, rows: T::Rows, offsets: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
     tint.show(rows, k, texels.bytes[usize::from(offsets[k]) & last])
+}
+
+/// Four of eight texels, from the first or from the fifth on, as they are shown.
+#[inline(always)]
+fn four_texels<T: Tint>(
+    tint: T,
+    rows: T::Rows,
+    offsets: [u16; LANES],
+    image: (Texels<'_>, usize),
+    first: usize,
+) -> u32 {
+    u32::from_le_bytes([
+        texel(tint, rows, offsets, image, first),
+        texel(tint, rows, offsets, image, first + 1),
+        texel(tint, rows, offsets, image, first + 2),
+        texel(tint, rows, offsets, image, first + 3),
+    ])
 }
 
 /// The number of pixels that are written at once if no more are left.
