@@ -397,7 +397,7 @@ mod tests {
             let shade = vec![[U8F8::from(3); 2]; corners.len()];
             let indices: Vec<[u32; 3]> =
                 triangles.iter().map(|(indices, _)| indices.map(|i| i % corners.len() as u32)).collect();
-            let columns = Columns { at: &at, depth: &depth, shade: &shade, effects: Default::default() };
+            let columns = Columns::plain(&at, &depth, &shade);
             let all = Triangles { columns, indices: &indices, by_corner: None };
             for kernel in Kernel::available() {
                 let draw = |are_together: bool| {

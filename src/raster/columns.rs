@@ -281,7 +281,19 @@ impl Triangles<'_> {
     }
 }
 
-impl Columns<'_> {
+impl<'a> Columns<'a> {
+    /// Columns without those for effects.
+    #[inline]
+    pub(super) fn plain(at: &'a [ScreenPos], depth: &'a [u32], shade: &'a [[U8F8; 2]]) -> Self {
+        Self {
+            at,
+            depth,
+            shade,
+            #[cfg(feature = "alloc")]
+            effects: EffectColumns::default(),
+        }
+    }
+
     /// Vertex `i`, which needs no clipping, as seen from one side, or with another shade.
     #[inline]
     pub(crate) fn vertex(&self, i: usize, side: usize, shade: Option<U8F8>) -> Vertex {

@@ -182,13 +182,7 @@ impl<'a> Frame<'a> {
 
     /// Borrows the frame for a shorter time.
     pub fn reborrow(&mut self) -> Frame<'_> {
-        Frame {
-            pixels: self.pixels,
-            width: self.width,
-            height: self.height,
-            pitch: self.pitch,
-            rows: self.rows.clone(),
-        }
+        Frame { pixels: self.pixels, rows: self.rows.clone(), ..*self }
     }
 
     /// Splits the frame into bands of `rows_each` rows (at least 1); the last may be shorter.

@@ -77,14 +77,8 @@ impl RowShader {
             Interpolation::GouraudHyperbolic => Self::Hyperbolic(HyperbolicPlane::of_values(triangle, values)),
             #[cfg(feature = "alloc")]
             Interpolation::GouraudFloat if !IS_SMALL => Self::Float(FloatPlane::of_values(triangle, values)),
-            // Handled above.
-            Interpolation::Flat(_) | Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
-                Self::of_values(triangle, values, interpolation)
-            }
-            // Only in a build for size.
-            Interpolation::GouraudVintage => Self::of_values(triangle, values, Interpolation::Gouraud88),
-            #[cfg(feature = "alloc")]
-            Interpolation::GouraudFloat => Self::of_values(triangle, values, Interpolation::Gouraud88),
+            // Only in a build for size: the others are handled above.
+            _ => Self::of_values(triangle, values, Interpolation::Gouraud88),
         }
     }
 
@@ -114,7 +108,7 @@ impl RowShader {
     #[inline]
     fn fill(&self, row: &Row, x: i32, pixels: &mut [u8]) {
         match self {
-            Self::Fixed16(plane) => fill_16_16(pixels, fixed16_start(plane, row, x), plane.step()),
+            Self::Fixed16(plane) => fill_16_16(pixels, fixed16_start(plane, row, x), plane.step),
             Self::Hyperbolic(plane) => plane.fill(x, row.y, pixels),
             #[cfg(feature = "alloc")]
             Self::Float(plane) if !IS_SMALL => {
@@ -123,9 +117,7 @@ impl RowShader {
             }
             Self::Flat(index) => pixels.fill(*index),
             // Their rows are split where they are reseeded.
-            Self::Linear { .. } | Self::Vintage(_) => {}
-            #[cfg(feature = "alloc")]
-            Self::Float(_) => {}
+            _ => {}
         }
     }
 }
@@ -174,7 +166,7 @@ impl RowShader {
     ) {
         match self {
             Self::Fixed16(plane) => {
-                let step = s.splat_i32(plane.step().cast_signed());
+                let step = s.splat_i32(plane.step.cast_signed());
                 let start = s.splat_i32(fixed16_start(plane, row, x).cast_signed());
                 let mut sums = s.add_i32(start, s.mul_i32(step, s.load_i32(&NUMBERS)));
                 for block in blocks(bytes, length) {
@@ -208,7 +200,7 @@ impl RowShader {
                 let mut sum = fixed16_start(plane, row, x).wrapping_sub(0x8000);
                 for shade in shades {
                     *shade = (sum >> 8) as u16;
-                    sum = sum.wrapping_add(plane.step());
+                    sum = sum.wrapping_add(plane.step);
                 }
             }
             Self::Hyperbolic(plane) => {
@@ -275,7 +267,7 @@ pub(super) fn to_bytes(shades: &[u16], thresholds: &ThresholdRow, column: usize,
 #[inline]
 fn fixed16_start(plane: &ShadePlane16, row: &Row, x: i32) -> u32 {
     // Columns are below 4,096; the sum is modulo 2³².
-    plane.start(row.origin, row.y).wrapping_add(plane.step().wrapping_mul((x - row.origin) as u32))
+    plane.start(row.origin, row.y).wrapping_add(plane.step.wrapping_mul((x - row.origin) as u32))
 }
 
 /// Destination of a row's pixels, which counts them.

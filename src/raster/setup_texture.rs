@@ -186,7 +186,7 @@ impl AffinePlanes8 {
             self.n[i][lane] = first.1 as f64 - (area.get() as f64 * 0.5 - 0.5);
             (self.per_row[i][lane], self.per_column[i][lane]) = (per_row.1 as f64, per_column.1 as f64);
             // Modulo 2³².
-            self.step[i][lane] = plane.step() as i32;
+            self.step[i][lane] = plane.step as i32;
         }
     }
 
@@ -476,7 +476,7 @@ impl PerspectivePlanes8 {
         coordinates: &[[i32; 3]; 2],
         texture: &PerspectiveTexture,
     ) {
-        let [steps, row_steps] = texture.steps();
+        let [steps, row_steps] = texture.steps;
         for i in 0..3 {
             (self.step[i][0], self.row_step[i][0]) = (steps[i], row_steps[i]);
         }

@@ -108,7 +108,7 @@ impl ShadeTrace {
     pub fn new(triangle: &SortedTriangle, values: [i64; 3], interpolation: Interpolation, row: &Row, x: i32) -> Self {
         let y = row.y;
         let plane = ShadePlane::of_values(triangle, values);
-        let linear = Ratio { numerator: plane.numerator(x, y).into(), denominator: i128::from(plane.area().get()) };
+        let linear = Ratio { numerator: plane.numerator(x, y).into(), denominator: i128::from(plane.area.get()) };
         match interpolation {
             Interpolation::Flat(byte) => Self { way: Progression::Flat(byte), exact: None, byte },
             Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
@@ -118,7 +118,7 @@ impl ShadeTrace {
                     first: row.origin,
                     start_at,
                     start: plane.start(start_at, y).into(),
-                    step: plane.per_column() / plane.area().get(),
+                    step: plane.per_column / plane.area.get(),
                     steps: x - start_at,
                     fraction_bits: 8,
                     half: 128,
@@ -132,7 +132,7 @@ impl ShadeTrace {
                     start_at: row.origin,
                     start: wide.start(row.origin, y),
                     // Below 2⁵⁴.
-                    step: plane.per_column() * 256 / plane.area().get(),
+                    step: plane.per_column * 256 / plane.area.get(),
                     steps: x - row.origin,
                     fraction_bits: 16,
                     half: 0x8000,

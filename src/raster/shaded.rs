@@ -439,7 +439,7 @@ impl Shades8 for Shaded8<'_> {
         #[cfg(feature = "alloc")]
         if self.kind == Kind::Float {
             let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
-            let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps();
+            let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps;
             for (to, step) in self.data.steps[self.listed.batches.current()].words.iter_mut().zip(steps) {
                 to[i % LANES] = step.to_bits().cast_signed();
             }

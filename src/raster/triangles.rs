@@ -266,13 +266,7 @@ impl<D: Cell> Raster<'_, D> {
             *pick = Pick(*pick).with_index(to).0;
         }
         let Pending { at, depth, shade, spans, drawn_by, .. } = &mut *pending;
-        let columns = Columns {
-            at: at.as_flattened(),
-            depth: depth.as_flattened(),
-            shade: shade.as_flattened(),
-            #[cfg(feature = "alloc")]
-            effects: Default::default(),
-        };
+        let columns = Columns::plain(at.as_flattened(), depth.as_flattened(), shade.as_flattened());
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &const { corner_indices::<N>() }, by_corner: Some(N) };
         self.picks(PickedTriangles { triangles: &triangles, picks }, *drawn_by, spans, None)
@@ -303,13 +297,7 @@ impl<D: Cell> Raster<'_, D> {
         triangles: &[[u32; 3]],
         interpolation: Interpolation,
     ) -> DrawStats {
-        let columns = Columns {
-            at: &vertices.at,
-            depth: &vertices.depth,
-            shade: &vertices.shade,
-            #[cfg(feature = "alloc")]
-            effects: Default::default(),
-        };
+        let columns = Columns::plain(&vertices.at, &vertices.depth, &vertices.shade);
         self.of_columns(columns, triangles, interpolation)
     }
 
@@ -356,13 +344,9 @@ impl<D: Cell> Raster<'_, D> {
     pub(super) fn tall_triangle(&mut self, vertices: &[Vertex; 3], interpolation: Interpolation) -> DrawStats {
         const INDICES: [[u32; 3]; 1] = [[0, 1, 2]];
         let at = vertices.each_ref().map(ScreenPos::of);
-        let columns = Columns {
-            at: &at,
-            depth: &vertices.each_ref().map(Vertex::depth),
-            shade: &vertices.each_ref().map(|vertex| [corner_shade(vertex, interpolation); 2]),
-            #[cfg(feature = "alloc")]
-            effects: Default::default(),
-        };
+        let depth = vertices.each_ref().map(Vertex::depth);
+        let shade = vertices.each_ref().map(|vertex| [corner_shade(vertex, interpolation); 2]);
+        let columns = Columns::plain(&at, &depth, &shade);
         let masks = cull(self.kernel.simd_level(), &at, &INDICES, self.clip, false);
         if masks.covers & 1 == 0 {
             return DrawStats::default();

@@ -105,14 +105,8 @@ static SET_PAIRS: [u64; 16] = {
     let mut all = [0; 16];
     let mut mask = 0;
     while mask < 16 {
-        let (mut lane, mut count) = (0, 0);
-        while lane < 4 {
-            if mask >> lane & 1 == 1 {
-                all[mask] |= ((2 * lane) | ((2 * lane + 1) << 8)) << (16 * count);
-                count += 1;
-            }
-            lane += 1;
-        }
+        // Each of its bits twice.
+        all[mask] = SET_LANES[3 * (mask & 1 | (mask & 2) << 1 | (mask & 4) << 2 | (mask & 8) << 3)];
         mask += 1;
     }
     all

@@ -7,7 +7,7 @@ use glam::Vec3;
 
 use super::Avx512;
 use super::avx2::{join_bytes, words_by_halves};
-use super::lanes::{Lanes8, intrinsics};
+use super::lanes::{Lanes8, inlined, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
 
@@ -102,30 +102,17 @@ impl Lanes8 for Avx512 {
         }
     }
 
-    #[inline(always)]
-    fn and(self, a: __mmask8, b: __mmask8) -> __mmask8 {
-        a & b
-    }
-    #[inline(always)]
-    fn and_not(self, a: __mmask8, b: __mmask8) -> __mmask8 {
-        a & !b
-    }
-    #[inline(always)]
-    fn mask_from_bits(self, bits: u8) -> __mmask8 {
-        bits
-    }
-    #[inline(always)]
-    fn to_bitmask(self, mask: __mmask8) -> u32 {
-        mask.into()
-    }
-
-    #[inline(always)]
-    fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
-        self.0.test_four(cells, depths, count, keeps)
-    }
-    #[inline(always)]
-    fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
-        self.0.test_eight(cells, depths, count, keeps)
+    inlined! {
+        fn and(self, a: __mmask8, b: __mmask8) -> __mmask8 { a & b }
+        fn and_not(self, a: __mmask8, b: __mmask8) -> __mmask8 { a & !b }
+        fn mask_from_bits(self, bits: u8) -> __mmask8 { bits }
+        fn to_bitmask(self, mask: __mmask8) -> u32 { mask.into() }
+        fn test_four(self, cells: &mut [u32; 4], depths: [i64; 2], count: usize, keeps: bool) -> u32 {
+            self.0.test_four(cells, depths, count, keeps)
+        }
+        fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
+            self.0.test_eight(cells, depths, count, keeps)
+        }
     }
 
     #[inline(always)]

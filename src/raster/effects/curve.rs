@@ -81,7 +81,7 @@ impl CurvePlane {
         let weights = Weights::new(triangle);
         // At most 2⁴².
         let share = 1.0 / triangle.area() as f64;
-        let steps = three(in_f64(weights.per_column()), |step| step * share);
+        let steps = three(in_f64(weights.per_column), |step| step * share);
         let mut curves = [Curve::default(); 3];
         for (channel, curve) in curves.iter_mut().enumerate().take(channels) {
             *curve = Curve::new(corners, channel, steps);

@@ -423,7 +423,7 @@ impl<'a> EffectSpans<'a> {
                     Some(WalkedTexture::Affine([u, v])) => {
                         let starts = [u, v].map(|plane| plane.start(seed, row.y));
                         // Modulo 2³²: texels repeat.
-                        let steps = [u, v].map(|plane| plane.step() as u32);
+                        let steps = [u, v].map(|plane| plane.step as u32);
                         self.listed
                             .data
                             .coordinates

@@ -48,7 +48,7 @@ impl LitPlane {
             values[6] = depth;
         }
         let weights = Weights::new(triangle);
-        Self { weights, values, step: Self::sum(&values, in_f64(weights.per_column())) }
+        Self { weights, values, step: Self::sum(&values, in_f64(weights.per_column)) }
     }
 
     /// The weighted sum of the corners' values, the corners in order from top to bottom.

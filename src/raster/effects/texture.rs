@@ -507,7 +507,7 @@ mod tests {
         let weights = Weights::new(triangle);
         let values = coordinates.map(i64::from);
         let (n, d) = (exact(weights.at(x, y), values), i128::from(triangle.area()) << level);
-        let falls = exact(weights.per_column(), values) < 0;
+        let falls = exact(weights.per_column, values) < 0;
         (if falls { -(-n).div_euclid(d) } else { n.div_euclid(d) }) as u32
     }
 
@@ -536,7 +536,7 @@ mod tests {
             prop_assume!(triangle.doubled_area != 0);
             let coordinates = coordinates.map(|coordinate| coordinate >> bits);
             let plane = AffinePlane::new(&triangle, Divisor::new(triangle.area()), coordinates);
-            let [gx, _] = plane.gradient();
+            let [gx, _] = plane.gradient;
             let in_level = AffineLevel { level, falls: [gx < 0; 2] };
             // Modulo 2²⁴, all that a texel's index depends on.
             let of_level = |x: u32| in_level.of([x; 2])[1] & 0xFF_FFFF;
@@ -551,7 +551,7 @@ mod tests {
                     prop_assert_eq!(of_level(start), defined(&triangle, coordinates, level, (x, row.y)) & 0xFF_FFFF);
                 }
                 if row.x0 < row.last {
-                    prop_assert_eq!(of_level(plane.step() as u32), step as u32 & 0xFF_FFFF);
+                    prop_assert_eq!(of_level(plane.step as u32), step as u32 & 0xFF_FFFF);
                 }
             }
         }
@@ -1073,7 +1073,7 @@ mod tests {
             let [start, step] = [u, v, divisors][i];
             // A step is 256 units wide.
             for (weights, sum, parts, side) in
-                [(weights.at(x, y), start, 101, sides[0]), (weights.per_column(), step, 14, 256)]
+                [(weights.at(x, y), start, 101, sides[0]), (weights.per_column, step, 14, 256)]
             {
                 let off = sum as i128 - [0, 1, 2].map(|k| i128::from(weights[k]) * values[k]).iter().sum::<i128>();
                 // Parts in 2⁵³, and less than one for the fraction that `as` drops.

@@ -24,7 +24,8 @@ use super::shade::ShadePlane;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShadePlane16 {
     plane: ShadePlane,
-    step: u32,
+    /// Step from pixel to pixel, in 1/65,536 shade modulo 2³².
+    pub(in crate::raster) step: u32,
 }
 
 impl ShadePlane16 {
@@ -34,19 +35,12 @@ impl ShadePlane16 {
     pub(crate) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let plane = ShadePlane::of_values(triangle, shades);
         // 2⁸ · |per_column| / A, by quotient and remainder: at most 2⁴⁶, and less than A.
-        let area = plane.area();
-        let (whole, rest) = area.div_rem_floor(plane.per_column().abs());
+        let area = &plane.area;
+        let (whole, rest) = area.div_rem_floor(plane.per_column.abs());
         let magnitude = (whole << 8) + area.floor(rest << 8);
         // Wrapping is intended: see the module's documentation.
-        let step = if plane.per_column() < 0 { -magnitude } else { magnitude } as u32;
+        let step = if plane.per_column < 0 { -magnitude } else { magnitude } as u32;
         Self { plane, step }
-    }
-
-    /// Step from pixel to pixel, in 1/65,536 shade modulo 2³².
-    #[must_use]
-    #[inline]
-    pub(crate) fn step(&self) -> u32 {
-        self.step
     }
 
     /// The sum at the pixel (`x`, `y`), whose centre lies in the triangle: the exact shade there in 1/65,536, rounded
@@ -54,10 +48,10 @@ impl ShadePlane16 {
     #[must_use]
     #[inline]
     pub(crate) fn start(&self, x: i32, y: i32) -> u32 {
-        let area = self.plane.area();
+        let area = &self.plane.area;
         // N·2⁸ / A, N at most 2⁵⁸, by quotient and remainder, which is less than A.
         let (whole, rest) = area.div_rem_floor(self.plane.numerator(x, y));
-        let bias = if self.plane.per_column() < 0 { area.get() - 1 } else { 0 };
+        let bias = if self.plane.per_column < 0 { area.get() - 1 } else { 0 };
         let exact = (whole << 8) + area.floor((rest << 8) + bias);
         // 0 to 0xFF_0000, because the pixel is covered.
         (exact + 0x8000) as u32

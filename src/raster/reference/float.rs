@@ -46,7 +46,7 @@ pub(in crate::raster) struct FloatPlane {
     /// The depth of each vertex times its shade, then its depth.
     values: [[f64; 2]; 3],
     /// Change of both sums from one pixel to the next.
-    steps: [f32; 2],
+    pub(in crate::raster) steps: [f32; 2],
     /// The least and the greatest shade of a vertex.
     range: [f32; 2],
 }
@@ -69,7 +69,7 @@ impl FloatPlane {
         let weights = Weights::new(triangle);
         let step = |products: [i128; 3]| {
             // Differences of areas: whole numbers within 2³⁰.
-            let [a, b, c] = three(weights.per_column(), i128::from);
+            let [a, b, c] = three(weights.per_column, i128::from);
             a * products[0] + b * products[1] + c * products[2]
         };
         // In 1/256 shade; at most 2⁸⁰, which f32 can represent.
@@ -79,11 +79,6 @@ impl FloatPlane {
         let values = three([0, 1, 2], |i| [(depths[i] * shades[i]) as f64 / 256.0, depths[i] as f64]);
         let [a, b, c] = three(shades, |shade| shade as f32 / 256.0);
         Self { weights, values, steps: [dn, dd], range: [a.min(b).min(c), a.max(b).max(c)] }
-    }
-
-    /// Change of n and of d from one pixel to the next.
-    pub(in crate::raster) fn steps(&self) -> [f32; 2] {
-        self.steps
     }
 
     /// A row of the triangle.

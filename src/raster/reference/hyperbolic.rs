@@ -66,7 +66,7 @@ impl HyperbolicPlane {
     /// The changes of both from one pixel to the next.
     #[must_use]
     pub(crate) fn step(&self) -> (i128, i128) {
-        let (n, d) = self.sums(self.weights.per_column(), 128);
+        let (n, d) = self.sums(self.weights.per_column, 128);
         (n, 256 * d)
     }
 
@@ -114,19 +114,12 @@ impl HyperbolicPlane {
             let [a, b, c] = in_f64(weights);
             [a * values[0] + b * values[1] + c * values[2], a * depths[0] + b * depths[1] + c * depths[2]]
         };
-        let ([n, d], [dn, dd]) = (sums(self.weights.at(x, y)), sums(self.weights.per_column()));
-        Self::is_sure(d, dd, pixels).then_some([[n, dn], [d, dd]])
-    }
-
-    /// Returns whether the divisors of this many pixels, given by the first one and its change per pixel, are close
-    /// enough to each other for quotients in f64.
-    #[inline(always)]
-    pub(in crate::raster) fn is_sure(d: f64, dd: f64, pixels: usize) -> bool {
+        let ([n, d], [dn, dd]) = (sums(self.weights.at(x, y)), sums(self.weights.per_column));
         const MAX_RATIO: f64 = 32_768.0;
         // At most 4,096 pixels.
         let last = d + pixels.saturating_sub(1) as f64 * dd;
         // False for NaN too.
-        d.min(last) * MAX_RATIO >= d.max(last)
+        (d.min(last) * MAX_RATIO >= d.max(last)).then_some([[n, dn], [d, dd]])
     }
 }
 

@@ -43,7 +43,7 @@ fn choose(across: u128, down: u128, unit: u128, last: u32) -> u32 {
 
 /// The level of a face whose coordinates, u and v, are linear on the screen. Its doubled area is at most 2⁴².
 pub(in crate::raster) fn of_face(planes: &[AffinePlane; 2], area: i64, last: u32) -> AffineLevel {
-    let [[ux, uy], [vx, vy]] = planes.each_ref().map(AffinePlane::gradient);
+    let [[ux, uy], [vx, vy]] = planes.each_ref().map(|plane| plane.gradient);
     // From one pixel to the next, times the area.
     let step = |u: i64, v: i64| doubled([256 * i128::from(u), 256 * i128::from(v)]);
     // Coordinates have 16 fraction bits.

@@ -44,11 +44,12 @@ pub const RESEED: i32 = PIECE as i32;
 /// The shade plane of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct ShadePlane {
-    area: Divisor,
+    /// The doubled area A.
+    pub(in crate::raster) area: Divisor,
     /// N at the centre of pixel (0, 0).
     origin: i64,
-    /// Change of N from one pixel to the next.
-    per_column: i64,
+    /// Change of N from one pixel to the next: within 2⁴⁶.
+    pub(in crate::raster) per_column: i64,
     /// Change of N from one row to the next.
     per_row: i64,
     step: u16,
@@ -107,17 +108,5 @@ impl ShadePlane {
     #[inline]
     pub(in crate::raster) fn numerator(&self, x: i32, y: i32) -> i64 {
         self.origin + self.per_column * i64::from(x) + self.per_row * i64::from(y)
-    }
-
-    /// Change of N from one pixel to the next: within 2⁴⁶.
-    #[inline]
-    pub(in crate::raster) fn per_column(&self) -> i64 {
-        self.per_column
-    }
-
-    /// The doubled area A.
-    #[inline]
-    pub(in crate::raster) fn area(&self) -> &Divisor {
-        &self.area
     }
 }

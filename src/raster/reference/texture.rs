@@ -33,14 +33,14 @@ pub(in crate::raster) struct AffinePlane {
     coordinate: i64,
     /// (x₀, y₀), relative to the centre of pixel (0, 0).
     corner: [i64; 2],
-    /// (gx, gy), each within 2⁵⁵.
-    gradient: [i64; 2],
+    /// (gx, gy): the numerators of the change per 1/256 pixel, each within 2⁵⁵.
+    pub(in crate::raster) gradient: [i64; 2],
     /// D·A is below 2⁶¹.
     fits: bool,
     /// Added to the numerator so that it rounds up: A − 1, or 0.
     bias: i64,
     /// Change from one pixel to the next, rounded toward zero.
-    step: i64,
+    pub(in crate::raster) step: i64,
 }
 
 impl AffinePlane {
@@ -68,17 +68,6 @@ impl AffinePlane {
             bias: if gx < 0 { area.get() - 1 } else { 0 },
             step,
         }
-    }
-
-    /// The numerators of the change per 1/256 pixel, in x and in y.
-    pub(in crate::raster) fn gradient(&self) -> [i64; 2] {
-        self.gradient
-    }
-
-    /// Change from one pixel to the next, rounded toward zero.
-    #[inline(always)]
-    pub(in crate::raster) fn step(&self) -> i64 {
-        self.step
     }
 
     /// The coordinate at a pixel, its change per column, and per row: each the floor, modulo 2³², and the
@@ -143,8 +132,8 @@ pub(in crate::raster) struct PerspectiveTexture {
     /// Each corner's u, v and 1, times its depth; below 2⁶³.
     values: [[i64; 3]; 3],
     estimated: [[f64; 3]; 3],
-    /// Change of the sums from one pixel to the next, and from one row to the next, in f64.
-    steps: [[f64; 3]; 2],
+    /// Change of the [sums](Self::sums) from one pixel to the next, and from one row to the next.
+    pub(in crate::raster) steps: [[f64; 3]; 2],
 }
 
 /// The sum over the corners of weights times values, exact.
@@ -183,7 +172,7 @@ impl PerspectiveTexture {
         let weights = Weights::new(triangle);
         let (mut estimated, mut steps) = ([[0.0; 3]; 3], [[0.0; 3]; 2]);
         if HAS_F64 {
-            let (per_column, per_row) = (in_f64(weights.per_column()), in_f64(weights.per_row()));
+            let (per_column, per_row) = (in_f64(weights.per_column), in_f64(weights.per_row));
             for (i, [a, b, c]) in values.into_iter().enumerate() {
                 estimated[i] = [a as f64, b as f64, c as f64];
                 (steps[0][i], steps[1][i]) = (estimate(per_column, estimated[i]), estimate(per_row, estimated[i]));
@@ -206,14 +195,9 @@ impl PerspectiveTexture {
         self.estimated.map(|values| estimate(at, values))
     }
 
-    /// The changes of the [sums](Self::sums) from one pixel to the next, and from one row to the next.
-    pub(in crate::raster) fn steps(&self) -> [[f64; 3]; 2] {
-        self.steps
-    }
-
     /// The sum of the magnitudes of the weights' changes per pixel and per row.
     pub(in crate::raster) fn sides(&self) -> f64 {
-        let changes = self.weights.per_column().into_iter().chain(self.weights.per_row());
+        let changes = self.weights.per_column.into_iter().chain(self.weights.per_row);
         changes.fold(0.0, |sum, change| sum + change.unsigned_abs() as f64)
     }
 

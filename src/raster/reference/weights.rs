@@ -12,8 +12,10 @@ use super::cover::SortedTriangle;
 pub(in crate::raster) struct Weights {
     /// At the centre of pixel (0, 0).
     origin: [i64; 3],
-    per_column: [i64; 3],
-    per_row: [i64; 3],
+    /// Change per pixel. The changes add up to 0 and are within 2³⁰.
+    pub(in crate::raster) per_column: [i64; 3],
+    /// Change per row, in the same range.
+    pub(in crate::raster) per_row: [i64; 3],
 }
 
 impl Weights {
@@ -39,20 +41,6 @@ impl Weights {
         let (x, y) = (i64::from(x), i64::from(y));
         let at = |i: usize| self.origin[i] + self.per_column[i] * x + self.per_row[i] * y;
         [at(0), at(1), at(2)]
-    }
-
-    /// Change of the weights per pixel. The changes add up to 0 and are within 2³⁰.
-    #[inline]
-    pub(in crate::raster) fn per_column(&self) -> [i64; 3] {
-        self.per_column
-    }
-}
-
-impl Weights {
-    /// Change of the weights per row, like [`per_column`](Self::per_column).
-    #[inline]
-    pub(in crate::raster) fn per_row(&self) -> [i64; 3] {
-        self.per_row
     }
 }
 

@@ -40,12 +40,6 @@ impl EdgePair {
         }
     }
 
-    /// Steps to the next row. Returns whether it has one.
-    #[inline]
-    fn down(&mut self) -> bool {
-        self.walk.down(&self.triangle)
-    }
-
     /// The face's shades, computed when it first has a pixel.
     #[inline]
     pub(super) fn paint(&mut self) -> &RowShader {
@@ -64,7 +58,7 @@ pub(super) struct List<'a> {
     /// Keys of a column and an index into `pairs`.
     keys: &'a mut [u64],
     active: usize,
-    pairs: &'a mut [EdgePair],
+    pub(super) pairs: &'a mut [EdgePair],
     /// The first index in `pairs` that a face has freed, or `used`.
     free: usize,
     /// Number of entries of `pairs` ever used. Freed entries are reused, so they are few and stay in the cache.
@@ -88,16 +82,6 @@ impl<'a> List<'a> {
     #[inline]
     pub(super) fn key(&self, index: usize) -> Option<Key> {
         self.keys[..self.active].get(index).map(|key| Key(*key))
-    }
-
-    #[inline]
-    pub(super) fn pair(&self, slot: usize) -> &EdgePair {
-        &self.pairs[slot]
-    }
-
-    #[inline]
-    pub(super) fn pair_mut(&mut self, slot: usize) -> &mut EdgePair {
-        &mut self.pairs[slot]
     }
 
     /// Inserts the faces that begin at row `y`. `coming` holds their keys, and is consumed.
@@ -138,7 +122,7 @@ impl<'a> List<'a> {
         for i in 0..self.active {
             let slot = Key(self.keys[i]).number();
             let pair = &mut self.pairs[slot];
-            if !pair.down() {
+            if !pair.walk.down(&pair.triangle) {
                 pair.next_free = self.free;
                 self.free = slot;
                 continue;

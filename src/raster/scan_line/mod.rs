@@ -197,7 +197,7 @@ impl Sweep {
                 x = key.position();
             }
             while let Some(key) = list.key(next).filter(|key| key.position() <= x) {
-                let pair = list.pair(key.number());
+                let pair = &list.pairs[key.number()];
                 if pair.row.x0 < pair.row.x1 {
                     self.drawn.covered += (pair.row.x1 - pair.row.x0) as u32;
                     open[opened] = key.number() as u64;
@@ -207,7 +207,7 @@ impl Sweep {
             }
             let mut end = list.key(next).map_or(i32::MAX, Key::position);
             for slot in &open[..opened] {
-                end = end.min(list.pair(*slot as usize).row.x1);
+                end = end.min(list.pairs[*slot as usize].row.x1);
             }
             let faces = &open[..opened];
             while !faces.is_empty() && x < end {
@@ -219,7 +219,7 @@ impl Sweep {
             }
             let mut kept = 0;
             for i in 0..opened {
-                if list.pair(open[i] as usize).row.x1 > x {
+                if list.pairs[open[i] as usize].row.x1 > x {
                     open[kept] = open[i];
                     kept += 1;
                 }
@@ -260,7 +260,7 @@ impl Sweep {
     ) {
         let Some(pixels) = raster.frame.row_mut(y as u32) else { return };
         let Run { slot, x0, x1 } = run;
-        let pair = list.pair_mut(slot);
+        let pair = &mut list.pairs[slot];
         let row = Row { y, x0, x1, ..pair.row };
         if !paint(pair.order, &row, pixels, raster.kernel, &mut self.drawn) {
             pair.paint().row(&row, &mut InRow { pixels, kernel: raster.kernel, drawn: &mut self.drawn });

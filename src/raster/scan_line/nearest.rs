@@ -26,14 +26,14 @@ const BACKGROUND: i64 = UNIT - 1;
 /// faces `open` cover row `y` from `x` to `end`, at least one pixel.
 pub(super) fn lead(open: &[u64], list: &mut List<'_>, x: i32, end: i32, y: i32) -> (Option<usize>, i32) {
     if let [only] = open
-        && list.pair(*only as usize).hides_background
+        && list.pairs[*only as usize].hides_background
     {
         return (Some(*only as usize), end);
     }
     let mut leader: Option<Leader> = None;
     for slot in open {
         let slot = *slot as usize;
-        let pair = list.pair_mut(slot);
+        let pair = &mut list.pairs[slot];
         let (order, plane) = (pair.order, *pair.depth());
         let z = plane.fixed_at(x, y);
         // Truncated as in `DepthPlane::at`; no depth is negative within its triangle.
@@ -70,7 +70,7 @@ pub(super) fn lead(open: &[u64], list: &mut List<'_>, x: i32, end: i32, y: i32) 
     }
     for slot in open {
         let slot = *slot as usize;
-        let pair = list.pair_mut(slot);
+        let pair = &mut list.pairs[slot];
         let least = match &leader {
             Some(leader) if leader.slot == slot => continue,
             Some(leader) if leader.order < pair.order => 0,
