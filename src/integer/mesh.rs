@@ -34,19 +34,10 @@ impl VertexIndex for u32 {
 /// A mesh in 16.16, borrowed and checked, so always valid.
 #[derive(Clone, Copy, Debug)]
 pub struct FixedMesh<'a, I: VertexIndex = u16> {
-    pub(crate) positions: &'a [Vector],
-    pub(crate) normals: &'a [Vector],
-    pub(crate) triangles: &'a [[I; 3]],
-    pub(crate) closed: bool,
-    /// A bit for each triangle that lies back to back with another, 64 per word; empty if there is none.
-    pub(crate) twins: &'a [u64],
-    pub(crate) exponent: i32,
+    pub(crate) parts: FixedMeshParts<'a, I>,
     /// The greatest distance of a vertex from the origin, in 1/65,536 of the mesh's own unit.
     pub(crate) radius: u64,
-    /// The surface of each vertex. Empty if all have surface 0.
-    pub(crate) vertex_surfaces: &'a [u16],
-    pub(crate) triangle_surfaces: &'a [u16],
-    /// The number of surfaces that the two slices refer to.
+    /// The number of surfaces that the parts refer to.
     pub(crate) surfaces: usize,
 }
 
@@ -104,18 +95,18 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
             }
         }
         check_indices(triangles, positions.len())?;
-        Ok(Self {
+        let (twins, exponent, vertex_surfaces, triangle_surfaces) = (&[][..], 0, &[][..], &[][..]);
+        let parts = FixedMeshParts {
             positions,
             normals,
             triangles,
             closed,
-            twins: &[],
-            exponent: 0,
-            radius: most.isqrt() + 1,
-            vertex_surfaces: &[],
-            triangle_surfaces: &[],
-            surfaces: 1,
-        })
+            twins,
+            exponent,
+            vertex_surfaces,
+            triangle_surfaces,
+        };
+        Ok(Self { parts, radius: most.isqrt() + 1, surfaces: 1 })
     }
 
     /// Scales the mesh by 2^`exponent`.
@@ -123,7 +114,7 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
     /// Its unit is then 2^`exponent` units of the scene, so a mesh of any size can use all of its 32 bits.
     #[must_use]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
-        self.exponent = i32::from(exponent);
+        self.parts.exponent = i32::from(exponent);
         self
     }
 
@@ -138,11 +129,11 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
         vertex_surfaces: &'a [u16],
         triangle_surfaces: &'a [u16],
     ) -> Result<Self, IntegerError> {
-        count("surfaces of vertices", vertex_surfaces.len(), self.positions.len())?;
-        count("surfaces of triangles", triangle_surfaces.len(), self.triangles.len())?;
+        count("surfaces of vertices", vertex_surfaces.len(), self.parts.positions.len())?;
+        count("surfaces of triangles", triangle_surfaces.len(), self.parts.triangles.len())?;
         let most = vertex_surfaces.iter().chain(triangle_surfaces).max();
         self.surfaces = most.map_or(1, |&most| usize::from(most) + 1);
-        (self.vertex_surfaces, self.triangle_surfaces) = (vertex_surfaces, triangle_surfaces);
+        (self.parts.vertex_surfaces, self.parts.triangle_surfaces) = (vertex_surfaces, triangle_surfaces);
         Ok(self)
     }
 
@@ -150,44 +141,35 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
     /// when they face away.
     #[must_use]
     pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
-        self.twins = twins;
+        self.parts.twins = twins;
         self
     }
 
     /// Returns the slices and values that the mesh consists of.
     #[must_use]
     pub fn parts(&self) -> FixedMeshParts<'a, I> {
-        FixedMeshParts {
-            positions: self.positions,
-            normals: self.normals,
-            triangles: self.triangles,
-            closed: self.closed,
-            twins: self.twins,
-            exponent: self.exponent,
-            vertex_surfaces: self.vertex_surfaces,
-            triangle_surfaces: self.triangle_surfaces,
-        }
+        self.parts
     }
 
     /// Counts the vertices, as many as a stage needs storage for.
     pub(crate) fn vertices(&self) -> usize {
-        self.positions.len()
+        self.parts.positions.len()
     }
 
     /// Returns whether a triangle is culled when it faces away: in a closed mesh, and in a back-to-back pair.
     #[inline]
     pub(super) fn hides_back(&self, triangle: usize) -> bool {
-        self.closed || self.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
+        self.parts.closed || self.parts.twins.get(triangle / 64).is_some_and(|bits| bits >> (triangle % 64) & 1 == 1)
     }
 
     #[inline]
     pub(super) fn vertex_surface(&self, vertex: usize) -> usize {
-        self.vertex_surfaces.get(vertex).copied().unwrap_or(0).into()
+        self.parts.vertex_surfaces.get(vertex).copied().unwrap_or(0).into()
     }
 
     #[inline]
     pub(super) fn triangle_surface(&self, triangle: usize) -> usize {
-        self.triangle_surfaces.get(triangle).copied().unwrap_or(0).into()
+        self.parts.triangle_surfaces.get(triangle).copied().unwrap_or(0).into()
     }
 }
 

@@ -86,7 +86,7 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
             *beam = sun.beam(&view)?;
         }
         for (i, (place, (&position, &normal))) in
-            lit.iter_mut().zip(mesh.positions.iter().zip(mesh.normals)).enumerate()
+            lit.iter_mut().zip(mesh.parts.positions.iter().zip(mesh.parts.normals)).enumerate()
         {
             let vertex = view.project(view.homogeneous(position));
             let (front, back) = match shading {
@@ -107,7 +107,7 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
     pub fn faces(&self, mut triangle: impl FnMut(&[Vertex; 3], Interpolation)) -> Faces {
         let mut counts = Faces::default();
         let mesh = &self.object.mesh;
-        for (face, indices) in mesh.triangles.iter().enumerate() {
+        for (face, indices) in mesh.parts.triangles.iter().enumerate() {
             // In range, which the mesh guarantees, and every vertex is lit.
             let indices = indices.map(VertexIndex::place);
             let corners = indices.map(|i| self.lit[i]);
@@ -144,7 +144,7 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
         counts: &mut Faces,
         triangle: &mut impl FnMut(&[Vertex; 3], Interpolation),
     ) {
-        let at = indices.map(|i| self.view.homogeneous(self.object.mesh.positions[i]));
+        let at = indices.map(|i| self.view.homogeneous(self.object.mesh.parts.positions[i]));
         let turned = !self.object.mesh.hides_back(face) && is_turned_away(&at);
         let corner = |i: usize| {
             let LitVertex { vertex, back, needs_clipping } = corners[i];
@@ -171,9 +171,9 @@ impl<'a, I: VertexIndex> VertexStage<'a, I> {
             Shading::Flat => {
                 counts.lit += 1;
                 let mesh = &self.object.mesh;
-                let [a, b, c] = indices.map(|i| mesh.positions[i]);
+                let [a, b, c] = indices.map(|i| mesh.parts.positions[i]);
                 // A face without area has no normal; rounded, it may still cover a pixel.
-                let normal = face_normal(a, b, c).unwrap_or(mesh.normals[indices[0]]);
+                let normal = face_normal(a, b, c).unwrap_or(mesh.parts.normals[indices[0]]);
                 let material = &self.object.materials[mesh.triangle_surface(face)];
                 let (front, back) = material.shades(self.beams, normal);
                 Interpolation::Flat(if turned { back } else { front }.nearest())

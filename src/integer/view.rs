@@ -221,7 +221,7 @@ impl ObjectView {
         let translation = view.axes.map(|axis| round_shift(dot(axis, to_position), SINE_BITS));
 
         // A position of 2¹⁶ in the mesh, times a scale of 2¹⁶, is 2^exponent in the scene.
-        let shift = 16 - (exponent + mesh.exponent);
+        let shift = 16 - (exponent + mesh.parts.exponent);
         if shift < 0 {
             return Err(IntegerError::TooFar);
         }

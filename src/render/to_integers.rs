@@ -12,8 +12,8 @@ use super::stats::Stats;
 use super::{RenderError, Screen};
 use crate::fixed::I16F16;
 use crate::integer::{
-    self, BinaryAngle, Camera, FixedMesh, IntegerError, Lens, LitVertex, Object, ObjectSun, Placement, Sun, Vector,
-    VertexStage, View,
+    self, BinaryAngle, Camera, FixedMesh, FixedMeshParts, IntegerError, Lens, LitVertex, Object, ObjectSun, Placement,
+    Sun, Vector, VertexStage, View,
 };
 use crate::light::{Light, Material};
 use crate::mesh::Mesh;
@@ -275,16 +275,15 @@ impl IntegerPath {
 fn fixed_mesh<'a>(meshes: &'a [Converted], prepared: &Prepared, object: &'a scene::Object) -> FixedMesh<'a, u32> {
     let converted = &meshes[prepared.converted];
     // Valid, because the mesh it was converted from is.
-    FixedMesh {
+    let parts = FixedMeshParts {
         positions: &converted.positions,
         normals: &converted.normals,
         triangles: object.mesh().triangles(),
         closed: object.mesh().is_outward(),
         twins: object.mesh().twins(),
         exponent: prepared.exponent,
-        radius: converted.radius,
         vertex_surfaces: object.vertex_surfaces(),
         triangle_surfaces: object.mesh().triangle_surfaces(),
-        surfaces: object.mesh().surfaces().len(),
-    }
+    };
+    FixedMesh { parts, radius: converted.radius, surfaces: object.mesh().surfaces().len() }
 }
