@@ -79,70 +79,19 @@ pub mod raster {
     }
 }
 
-use alloc::vec::Vec;
-
-use crate::light::{Light, Material};
+use crate::light::Light;
 use crate::mesh::Mesh;
 pub use crate::plan::reason::name_of;
 pub use crate::raster::shade_trace::{Accumulator, Progression, Ratio, ShadeTrace, row_of};
-pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle};
-pub use crate::render::integer_frame::IntegerFrame;
-use crate::render::{RenderError, Renderer, Screen, Stats};
-pub use crate::scene::object::turn;
+pub use crate::render::each_triangle::{DrawnEffects, DrawnTriangle, each_triangle, make_vertices, show_channel};
+pub use crate::render::integer_frame::{IntegerFrame, integer_frame};
+pub use crate::scene::object::{turn, with_mesh};
 use crate::scene::{Object, Scene, Shared};
-
-/// Calls `visit` for every triangle that [`Renderer::draw`] would draw, in the order of
-/// [`Renderer::for_each_triangle`], with everything that the raster would receive. Returns the work counts, except
-/// those of the raster. Nothing is drawn, and later frames are unaffected.
-///
-/// # Errors
-/// The errors of [`Renderer::draw`], before the first triangle.
-pub fn each_triangle(
-    renderer: &mut Renderer,
-    scene: &Scene,
-    screen: Screen,
-    visit: &mut dyn FnMut(&DrawnTriangle<'_>),
-) -> Result<Stats, RenderError> {
-    renderer.each_triangle(scene, screen, visit)
-}
-
-/// Computes the plan and the vertices of a frame without drawing it.
-///
-/// # Errors
-/// The errors of [`Renderer::draw`].
-pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
-    renderer.make_vertices(scene, screen)
-}
-
-/// Prepares a frame for the 16.16 path without drawing it, stores it in the renderer and returns its numbers.
-///
-/// # Errors
-/// The errors of [`Renderer::draw`].
-pub fn integer_frame<'a>(
-    renderer: &'a mut Renderer,
-    scene: &'a Scene,
-    screen: Screen,
-) -> Result<IntegerFrame<'a>, RenderError> {
-    renderer.integer_frame(scene, screen)
-}
-
-/// Shows the shades of one channel (0 red, 1 green, 2 blue) instead of combining all three into a
-/// palette entry; `None`, the default, combines them.
-pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
-    renderer.show_channel(channel);
-}
 
 /// The mesh of an object, to be stored or compared by address.
 #[must_use]
 pub fn shared_mesh(object: &Object) -> &Shared<Mesh> {
     object.shared_mesh()
-}
-
-/// Copies an object with another mesh and a material for each of its surfaces. No vertex of the
-/// mesh may be shared by two surfaces.
-#[must_use]
-pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) -> Object {
-    object.with_mesh(mesh, materials)
 }
 
 /// Checks a light.

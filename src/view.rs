@@ -15,15 +15,11 @@ use glam::{Mat3, Vec3};
 use crate::angle::Angle;
 use crate::fixed::{I24F8, U8F8};
 use crate::mesh::Bounds;
-use crate::mesh::wide::{dot, widen};
+use crate::mesh::wide::{dot, sub, widen};
 use crate::raster::{Rect, Vertex};
 use crate::scene::framing::{axes, unit};
 use crate::scene::object::Placement;
 use crate::scene::{Camera, Object, matrix_product};
-
-mod narrow;
-
-pub(crate) use narrow::Narrow;
 
 /// The screen: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -89,8 +85,7 @@ impl View {
             return Err("its field of view must be above 0 and below 180°");
         }
         let (eye, up) = (widen(eye), widen(up));
-        let to_target = widen(target);
-        let Some(forward) = unit([to_target[0] - eye[0], to_target[1] - eye[1], to_target[2] - eye[2]]) else {
+        let Some(forward) = unit(sub(widen(target), eye)) else {
             return Err("it looks at its own position");
         };
         let Some([right, up, backward]) = axes(forward, up) else {
@@ -109,14 +104,11 @@ impl View {
             near,
         })
     }
-}
 
-impl View {
     /// The screen position of a world point, in pixels, and its distance in front of the eye; `None` if it is nearer
     /// than the near distance.
     pub(crate) fn on_screen(&self, world: Vec3) -> Option<[f64; 3]> {
-        let world = widen(world);
-        let from_eye = [0, 1, 2].map(|i| world[i] - self.eye[i]);
+        let from_eye = sub(widen(world), self.eye);
         let [x, y, distance] = self.rows.map(|row| dot(row, from_eye));
         let (cx, cy) = (f64::from(self.centre.0), f64::from(self.centre.1));
         // NaN fails.
@@ -155,9 +147,7 @@ impl Camera {
         let on_screen = View::new(self, screen).ok()?.on_screen(point.into())?;
         Some(on_screen.map(|c| c as f32)).filter(|on_screen| on_screen.iter().all(|c| c.is_finite()))
     }
-}
 
-impl Camera {
     /// The direction from the eye through a point of the screen, as a unit vector, for picking: the inverse of
     /// [`project`](Self::project). The point is in pixels from the upper left corner, and may be off the screen; the
     /// centre of pixel (x, y) is at (x + ½, y + ½). `None` if the point is not finite, or the camera or the screen is
@@ -235,6 +225,22 @@ pub(crate) struct Homogeneous {
     pub(crate) w: f64,
 }
 
+/// An object's transform to the screen in f32, for vertices that are projected eight at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Narrow {
+    pub(crate) matrix: Mat3,
+    pub(crate) offset: Vec3,
+    pub(crate) centre: (f32, f32),
+    pub(crate) near: f32,
+}
+
+impl Narrow {
+    /// The largest coordinate, in pixels.
+    pub(crate) const LIMIT: f32 = (ObjectView::LIMIT + ObjectView::ROOM) as f32;
+}
+
+const _: () = assert!(Vertex::GUARD_BAND as f32 >= Narrow::LIMIT * 256.0);
+
 impl ObjectView {
     /// The limit of projected coordinates, in pixels, in both directions; points beyond it are clipped. It is beyond
     /// the last pixel centre of the largest frame, 4,095.5, and inside the raster's guard band by [`ROOM`](Self::ROOM).
@@ -296,6 +302,12 @@ impl ObjectView {
         core::array::from_fn(|j| {
             self.pivot[j] + dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], from) / self.scale
         })
+    }
+
+    /// The transform in f32, unless f32 could overflow.
+    pub(crate) fn narrow(&self) -> Option<Narrow> {
+        let (matrix, offset) = self.fast?;
+        Some(Narrow { matrix, offset, centre: self.centre, near: self.near })
     }
 
     /// The eye in object space.
@@ -370,38 +382,31 @@ impl ObjectView {
         }
     }
 
+    /// Where a vertex is on the screen, in pixels, and its distance along the view.
+    #[inline]
+    fn screen_position(&self, p: Vec3) -> [f64; 3] {
+        if let Some((matrix, offset)) = self.fast {
+            let v = matrix * p + offset;
+            let inverse = 1.0 / v.z;
+            let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
+            return [f64::from(x), f64::from(y), f64::from(v.z)];
+        }
+        let Homogeneous { x, y, w } = self.homogeneous(p);
+        let (cx, cy) = self.centre();
+        [cx + x / w, cy + y / w, w]
+    }
+
     /// Projects a vertex of an object that neither crosses the near plane nor leaves the screen.
     /// The results equal those of [`project`](Self::project).
     #[inline]
     pub(crate) fn project_inside(&self, p: Vec3) -> Vertex {
-        match self.fast {
-            Some((matrix, offset)) => {
-                let v = matrix * p + offset;
-                let inverse = 1.0 / v.z;
-                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
-                self.vertex_inside(f64::from(x), f64::from(y), f64::from(v.z))
-            }
-            None => {
-                let h = self.homogeneous(p);
-                self.vertex_inside(f64::from(self.centre.0) + h.x / h.w, f64::from(self.centre.1) + h.y / h.w, h.w)
-            }
-        }
-    }
-
-    #[inline]
-    fn vertex_inside(&self, x: f64, y: f64, w: f64) -> Vertex {
+        let [x, y, w] = self.screen_position(p);
         let at = |c: f64| I24F8::round_from_f64(c).unwrap_or_default();
         Vertex::new(at(x), at(y), U8F8::default(), self.depth(w)).unwrap_or_default()
     }
 
     /// Transforms a world direction to a unit vector in object space; `None` for the zero vector.
-    pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<Vec3> {
-        let [x, y, z] = self.wide_direction_in_object(world)?;
-        Some(Vec3::new(x as f32, y as f32, z as f32))
-    }
-
-    /// The result of [`direction_in_object`](Self::direction_in_object) before rounding.
-    pub(crate) fn wide_direction_in_object(&self, world: Vec3) -> Option<[f64; 3]> {
+    pub(crate) fn direction_in_object(&self, world: Vec3) -> Option<[f64; 3]> {
         let world = unit(widen(world))?;
         Some(core::array::from_fn(|j| dot([self.turn[0][j], self.turn[1][j], self.turn[2][j]], world)))
     }
@@ -471,21 +476,8 @@ impl ObjectView {
     /// Projects a vertex, without its shade; `None` if it must be clipped.
     #[inline]
     pub(crate) fn project(&self, p: Vec3) -> Option<Vertex> {
-        match self.fast {
-            Some((matrix, offset)) => {
-                let v = matrix * p + offset;
-                if v.z < self.near {
-                    return None;
-                }
-                let inverse = 1.0 / v.z;
-                let (x, y) = (self.centre.0 + v.x * inverse, self.centre.1 + v.y * inverse);
-                self.vertex(f64::from(x), f64::from(y), f64::from(v.z), U8F8::default())
-            }
-            None => {
-                let h = self.homogeneous(p);
-                if h.w < f64::from(self.near) { None } else { self.divide(h, U8F8::default()) }
-            }
-        }
+        let [x, y, w] = self.screen_position(p);
+        if w < f64::from(self.near) { None } else { self.vertex(x, y, w, U8F8::default()) }
     }
 
     /// Projects a point at or beyond the near plane to a vertex on the screen; `None` if it is

@@ -149,21 +149,17 @@ impl Rules<'_> {
         for effect in Effect::ALL {
             let mut decision = self.decision(effect, plan);
             if effect.is_left_out() {
-                plan.set(effect, Decision::off(Reason::LeftOut));
-                continue;
-            }
-            if self.is_integer && !in_integers(effect) {
-                plan.set(effect, Decision::off(Reason::NotInIntegers));
-                continue;
-            }
-            if let Some(on) = self.inputs.forced.get(Some(self.scene.object_ids()[self.index]), effect)
+                decision = Decision::off(Reason::LeftOut);
+            } else if self.is_integer && !in_integers(effect) {
+                decision = Decision::off(Reason::NotInIntegers);
+            } else if let Some(on) = self.inputs.forced.get(Some(self.scene.object_ids()[self.index]), effect)
                 && on != decision.on
                 && !(decision.on && effect.keeps_inside())
             {
                 decision = Decision { on, reason: Reason::Overrides, choice: forced_choice(on, decision.choice) };
                 overridden[effect.index()] = true;
             }
-            plan.set(effect, decision);
+            plan.decisions[effect.index()] = decision;
         }
         if let Some(max_error) = self.max_error {
             self.keep_within(max_error, plan);

@@ -119,10 +119,6 @@ impl ObjectPlan {
     pub fn max_error(&self) -> Option<f32> {
         self.max_error
     }
-
-    pub(crate) fn set(&mut self, effect: Effect, decision: Decision) {
-        self.decisions[effect.index()] = decision;
-    }
 }
 
 /// Manual overrides of effects: `None` leaves an effect to the plan.

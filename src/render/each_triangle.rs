@@ -37,40 +37,59 @@ pub struct DrawnEffects<'a> {
     pub pipeline: &'a PixelPipeline<'a>,
 }
 
-impl Renderer {
-    /// Calls `visit` for every triangle that [`draw`](Self::draw) would draw, in the order of
-    /// [`for_each_triangle`](Self::for_each_triangle), with everything that the raster would receive. Draws nothing,
-    /// and does not affect later frames.
-    pub(crate) fn each_triangle(
-        &mut self,
-        scene: &Scene,
-        screen: Screen,
-        visit: &mut dyn FnMut(&DrawnTriangle<'_>),
-    ) -> Result<Stats, RenderError> {
-        let (mut stats, _) = self.prepare(scene, screen, None, true)?;
-        self.last = None;
-        let Self { cache, scratch, kernel, .. } = self;
-        let pipelines = Pipelines { scene, cache, kernel: *kernel };
-        let memory = (&mut scratch.integer, &mut scratch.pick, &mut scratch.counts);
-        each_run(scene, cache, (*kernel, None), false, memory, &mut stats, &mut |object, run| {
-            let state = &cache.states[object];
-            let surfaces = state.geometry(&scene.objects()[object]).triangle_surfaces;
-            for k in 0..run.picks.picks.len() {
-                let (vertices, interpolation) = run.vertices(k);
-                let face = (!cache.plan.is_integer).then(|| run.face(k));
-                let ramp = face.map(|face| state.materials[usize::from(surfaces[face])].ramp);
-                let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
-                if !run.look.effects {
-                    visit(&plain);
-                    continue;
-                }
-                let (attributes, transparent) = (&run.attributes(k), run.look.transparent);
-                pipelines.with(object, run.look, |pipeline| {
-                    let effects = Some(DrawnEffects { attributes, transparent, pipeline });
-                    visit(&DrawnTriangle { effects, ..plain });
-                });
+/// Calls `visit` for every triangle that [`Renderer::draw`] would draw, in the order of
+/// [`Renderer::for_each_triangle`], with everything that the raster would receive. Returns the work counts, except
+/// those of the raster. Nothing is drawn, and later frames are unaffected.
+///
+/// # Errors
+/// The errors of [`Renderer::draw`], before the first triangle.
+pub fn each_triangle(
+    renderer: &mut Renderer,
+    scene: &Scene,
+    screen: Screen,
+    visit: &mut dyn FnMut(&DrawnTriangle<'_>),
+) -> Result<Stats, RenderError> {
+    let (mut stats, _) = renderer.prepare(scene, screen, None, true)?;
+    renderer.last = None;
+    let Renderer { cache, scratch, kernel, .. } = renderer;
+    let pipelines = Pipelines { scene, cache, kernel: *kernel };
+    let memory = (&mut scratch.integer, &mut scratch.pick, &mut scratch.counts);
+    each_run(scene, cache, (*kernel, None), false, memory, &mut stats, &mut |object, run| {
+        let state = &cache.states[object];
+        let surfaces = state.geometry(&scene.objects()[object]).triangle_surfaces;
+        for k in 0..run.picks.picks.len() {
+            let (vertices, interpolation) = run.vertices(k);
+            let face = (!cache.plan.is_integer).then(|| run.face(k));
+            let ramp = face.map(|face| state.materials[usize::from(surfaces[face])].ramp);
+            let plain = DrawnTriangle { object, face, vertices: &vertices, interpolation, ramp, effects: None };
+            if !run.look.effects {
+                visit(&plain);
+                continue;
             }
-        });
-        Ok(stats)
-    }
+            let (attributes, transparent) = (&run.attributes(k), run.look.transparent);
+            pipelines.with(object, run.look, |pipeline| {
+                let effects = Some(DrawnEffects { attributes, transparent, pipeline });
+                visit(&DrawnTriangle { effects, ..plain });
+            });
+        }
+    });
+    Ok(stats)
+}
+
+/// Computes the plan and the vertices of a frame without drawing it, to measure their cost.
+///
+/// # Errors
+/// The errors of [`Renderer::draw`].
+pub fn make_vertices(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
+    renderer.prepare(scene, screen, None, true)?;
+    renderer.last = None;
+    Ok(())
+}
+
+/// Shows the shades of one channel (0 red, 1 green, 2 blue) instead of combining all three into a palette entry; `None`,
+/// the default, combines them.
+pub fn show_channel(renderer: &mut Renderer, channel: Option<usize>) {
+    renderer.cache.tables.only_channel = channel;
+    // The machine holds another image.
+    renderer.last = None;
 }

@@ -100,12 +100,7 @@ impl<'a> Faces<'a> {
         }
         let surfaces = self.geometry.triangle_surfaces;
         let first = surfaces[Pick(picks[0]).index()];
-        for &pick in picks {
-            if surfaces[Pick(pick).index()] != first {
-                return None;
-            }
-        }
-        Some(first)
+        picks.iter().all(|&pick| surfaces[Pick(pick).index()] == first).then_some(first)
     }
 
     /// The single shade of each picked face, or its three channels.
@@ -133,14 +128,9 @@ impl<'a> Faces<'a> {
 
     /// Stores the shades of up to eight faces of one surface.
     #[inline(always)]
-    fn put(&self, material: &SurfaceMaterial, shades: [u16; LANES], flat: &mut [[U8F8; 3]]) {
-        for (lane, flat) in flat.iter_mut().take(LANES).enumerate() {
-            *flat = [U8F8::from_bits(shades[lane]); 3];
-        }
-        if material.response.is_some() {
-            for flat in flat {
-                *flat = [material.respond(flat[0]); 3];
-            }
+    fn put(material: &SurfaceMaterial, shades: [u16; LANES], flat: &mut [[U8F8; 3]]) {
+        for (flat, shade) in flat.iter_mut().zip(shades) {
+            *flat = [material.respond(U8F8::from_bits(shade)); 3];
         }
     }
 }
@@ -177,7 +167,7 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
                     fronts[lane] = if Pick(pick).side() == 0 { fronts[lane] } else { backs[lane] };
                 }
             }
-            faces.put(material, fronts, flat);
+            Faces::put(material, fronts, flat);
         }
     }
 }
@@ -217,7 +207,7 @@ fn light_faces_fully_by<S: F32Lanes8>(s: S, faces: &Faces<'_>, picks: &[u32], fl
             let material = &faces.materials[usize::from(surface)];
             let points = &points[k % (CHUNK / LANES)];
             let light = faces.lights.front_of_one_channel::<true>(&material.reflectance, points, faces.kernel);
-            faces.put(material, s.low_words(shade_of_intensities(s, material, s.load_f64(&light))), flat);
+            Faces::put(material, s.low_words(shade_of_intensities(s, material, s.load_f64(&light))), flat);
         }
     }
 }

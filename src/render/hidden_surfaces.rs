@@ -186,7 +186,8 @@ impl Renderer {
         }
         stats.raster += drawn;
         // Faces of the 16.16 path are not counted one by one.
-        stats.shares.complete(stats.shading.into(), stats.drawn);
+        let counted: u64 = stats.shares.into_iter().map(|(_, count)| count).sum();
+        stats.shares.add(stats.shading.into(), stats.drawn - counted);
     }
 }
 
@@ -231,7 +232,6 @@ fn scan_line(
     (triangles, lists): (&mut Vec<([Vertex; 3], Interpolation)>, &mut Lists),
     painter: &mut Painter<'_, '_>,
 ) -> DrawStats {
-    triangles.clear();
     triangles.extend(faces.iter().map(|face| {
         let triangles = face.triangles(scene, cache, added);
         let vertices = PickedTriangles { triangles: &triangles, picks: face.picks() }.vertices(0);

@@ -28,29 +28,30 @@ pub struct IntegerFrame<'a> {
     pub objects: Vec<(usize, Object<'a, u32>)>,
 }
 
-impl Renderer {
-    /// Prepares a frame with the 16.16 path and returns its numbers, without drawing.
-    pub(crate) fn integer_frame<'a>(
-        &'a mut self,
-        scene: &'a Scene,
-        screen: Screen,
-    ) -> Result<IntegerFrame<'a>, RenderError> {
-        self.settings.vertex_path = Some(VertexPath::Integer);
-        let (stats, _) = self.prepare(scene, screen, None, true)?;
-        self.last = None;
-        let Some((camera, focal, suns)) = self.cache.integer.frame() else {
-            return Err(RenderError::Camera("there is none"));
-        };
-        let order = self.cache.plan.order.iter();
-        let method = self.cache.plan.hidden_surfaces();
-        Ok(IntegerFrame {
-            shading: stats.shading,
-            is_depth_tested: !matches!(method, HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder),
-            background: scene.background,
-            camera,
-            focal,
-            suns,
-            objects: order.filter_map(|&i| Some((i, self.cache.integer.object(i, &scene.objects()[i])?))).collect(),
-        })
-    }
+/// Prepares a frame for the 16.16 path without drawing it, stores it in the renderer and returns its numbers.
+///
+/// # Errors
+/// The errors of [`Renderer::draw`].
+pub fn integer_frame<'a>(
+    renderer: &'a mut Renderer,
+    scene: &'a Scene,
+    screen: Screen,
+) -> Result<IntegerFrame<'a>, RenderError> {
+    renderer.settings.vertex_path = Some(VertexPath::Integer);
+    let (stats, _) = renderer.prepare(scene, screen, None, true)?;
+    renderer.last = None;
+    let Some((camera, focal, suns)) = renderer.cache.integer.frame() else {
+        return Err(RenderError::Camera("there is none"));
+    };
+    let order = renderer.cache.plan.order.iter();
+    let method = renderer.cache.plan.hidden_surfaces();
+    Ok(IntegerFrame {
+        shading: stats.shading,
+        is_depth_tested: !matches!(method, HiddenSurfaces::BackFaces | HiddenSurfaces::PainterOrder),
+        background: scene.background,
+        camera,
+        focal,
+        suns,
+        objects: order.filter_map(|&i| Some((i, renderer.cache.integer.object(i, &scene.objects()[i])?))).collect(),
+    })
 }

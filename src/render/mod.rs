@@ -43,6 +43,7 @@ mod vertex_columns;
 
 use alloc::vec::Vec;
 
+use self::each_triangle::each_triangle;
 use self::hidden_surfaces::Scratch;
 use self::object::ObjectState;
 use self::tables::Tables;
@@ -149,14 +150,6 @@ impl Renderer {
     /// [`force`](Self::force).
     pub fn force_for(&mut self, object: ObjectId, effect: Effect, on: Option<bool>) {
         self.overrides.set(Some(object), effect, on);
-    }
-
-    /// Shows one channel's shades, 0 red, 1 green, 2 blue, where three would be mixed to a palette entry; with `None`,
-    /// the default, they are mixed. This is for measuring shades.
-    pub(crate) fn show_channel(&mut self, channel: Option<usize>) {
-        self.cache.tables.only_channel = channel;
-        // The machine holds another image.
-        self.last = None;
     }
 
     /// The latest plan: that of the last frame drawn, or the one from [`make_plan`](Self::make_plan).
@@ -333,19 +326,12 @@ impl Renderer {
         screen: Screen,
         mut triangle: impl FnMut(&[Vertex; 3], Interpolation),
     ) -> Result<Stats, RenderError> {
-        self.each_triangle(scene, screen, &mut |drawn| {
+        each_triangle(self, scene, screen, &mut |drawn| {
             triangle(
                 drawn.vertices,
                 if drawn.effects.is_some() { Interpolation::default() } else { drawn.interpolation },
             );
         })
-    }
-
-    /// Makes the plan and the vertices of a frame, and draws nothing. For measuring their cost.
-    pub(crate) fn make_vertices(&mut self, scene: &Scene, screen: Screen) -> Result<(), RenderError> {
-        self.prepare(scene, screen, None, true)?;
-        self.last = None;
-        Ok(())
     }
 
     /// Checks the scene, makes the plan, and computes the vertices that it requires. Returns
@@ -394,13 +380,7 @@ impl Renderer {
                 stats.kept += 1;
             }
         }
-        pipelines::ensure_tables(
-            &mut self.cache.tables,
-            scene,
-            palette.unwrap_or(&BIOS),
-            &self.cache.plan,
-            &self.cache.states,
-        );
+        pipelines::ensure_tables(&mut self.cache, scene, palette.unwrap_or(&BIOS));
         Ok((stats, changed))
     }
 

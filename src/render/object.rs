@@ -3,6 +3,8 @@
 
 use alloc::vec::Vec;
 
+use glam::Vec3;
+
 use super::Stats;
 use super::budget::Budget;
 use super::faces::{FacePoints, Faces, face_points};
@@ -112,7 +114,7 @@ fn replace_all<T: PartialEq>(list: &mut Vec<T>, new: impl Iterator<Item = T>) ->
 /// A sun in the object space of `view`.
 fn sun(light: &Light, view: &ObjectView) -> Option<SunBeam> {
     let Light::Sun { direction, intensity, color } = *light else { return None };
-    let towards = view.direction_in_object(direction)?;
+    let towards = Vec3::from_array(view.direction_in_object(direction)?.map(|c| c as f32));
     Some(SunBeam { towards, intensity: light.brightness(), channels: color.map(|c| c * intensity) })
 }
 
@@ -122,7 +124,7 @@ pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     // In the object's units.
     let part = view.scale() / f64::from(range);
     let cone = match cone {
-        Some(cone) => Some(ConeBeam::new(&cone, view.wide_direction_in_object(cone.direction)?)?),
+        Some(cone) => Some(ConeBeam::new(&cone, view.direction_in_object(cone.direction)?)?),
         None => None,
     };
     Some(LampBeam {
@@ -511,7 +513,7 @@ fn mesh_geometry(object: &Object) -> Geometry<'_> {
         positions: mesh.positions(),
         normals: mesh.normals(),
         texcoords: mesh.texcoords(),
-        vertex_surfaces: object.vertex_surfaces(),
+        vertex_surfaces: mesh.vertex_surfaces(),
         triangles: mesh.triangles(),
         triangle_surfaces: mesh.triangle_surfaces(),
         twins: mesh.twins(),

@@ -148,14 +148,6 @@ impl<'a> Picker<'a> {
         }
     }
 
-    /// Adds the faces whose bits are set, out of 64; they all have this look.
-    #[inline]
-    fn add(&mut self, look: Look, first: usize, masks: &CullMasks, chosen: u64) {
-        // Below `Pick::MAX_COUNT`.
-        pick(self.kernel.simd_level(), &mut self.scratch.picks, first as u32, masks, chosen);
-        self.run_to_end(look);
-    }
-
     /// Adds one face, or one triangle that the frame adds.
     #[inline]
     fn push(&mut self, look: Look, pick: u32, flat: Option<[U8F8; 3]>) {
@@ -259,7 +251,9 @@ impl Faces<'_> {
             let of_common = classes.as_ref().map_or(unclipped, |classes| classes.linear);
             linear += u64::from(of_common.count_ones());
             if let Some(look) = one_look.filter(|_| of_common == left) {
-                picker.add(look, first, &masks, left);
+                // Below `Pick::MAX_COUNT`.
+                pick(picker.kernel.simd_level(), &mut picker.scratch.picks, first as u32, &masks, left);
+                picker.run_to_end(look);
                 self.make_space(picker, stats);
                 continue;
             }
@@ -483,12 +477,9 @@ impl Faces<'_> {
             stats.culled += 1;
             return;
         }
-        let mut first = None;
-        for (vertex, corner) in polygon.vertices().iter().zip(corners.as_slice()) {
-            let index = added.vertex(vertex, &corner.attributes);
-            first.get_or_insert(index);
-        }
-        let first = first.unwrap_or(0);
+        // Indices ascend.
+        let vertices = polygon.vertices().iter().zip(corners.as_slice());
+        let first = vertices.map(|(vertex, corner)| added.vertex(vertex, &corner.attributes)).min().unwrap_or(0);
         for part in polygon.part_corners() {
             stats.drawn += 1;
             // At most seven more than the first.

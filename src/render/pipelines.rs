@@ -2,16 +2,14 @@
 
 use super::Cache;
 use super::budget::limits;
-use super::object::ObjectState;
 use super::picker::Look;
 use super::pixel_light::PixelLight;
 use super::surface_material::SurfaceMaterial;
-use super::tables::{Image, Tables};
+use super::tables::Image;
 use crate::light::{Blend, Material};
 use crate::palette::Palette;
-use crate::plan::FaceShading;
 use crate::plan::stages::Dither;
-use crate::plan::{ObjectPlan, Plan};
+use crate::plan::{FaceShading, ObjectPlan};
 use crate::raster::Interpolation;
 use crate::raster::effects::{PixelPipeline, ShadeSource, TextureStage};
 use crate::scene::Scene;
@@ -19,9 +17,6 @@ use crate::settings::{Mapping, Shading};
 use crate::span::Kernel;
 use crate::span::dither::Thresholds;
 use crate::span::texture::Texels;
-
-/// A single texel, for an image that changes nothing.
-const ONE_TEXEL: [u8; 1] = [0];
 
 /// The image of a surface, if one is on: its own, or the environment it mirrors.
 fn image<'a>(plan: &ObjectPlan, own: &'a Material, material: &SurfaceMaterial) -> Option<Image<'a>> {
@@ -37,18 +32,13 @@ fn image<'a>(plan: &ObjectPlan, own: &'a Material, material: &SurfaceMaterial) -
 
 /// Makes the tables that a frame needs.
 #[inline(never)]
-pub(super) fn ensure_tables(
-    tables: &mut Tables,
-    scene: &Scene,
-    palette: &Palette,
-    plan: &Plan,
-    states: &[ObjectState],
-) {
+pub(super) fn ensure_tables(cache: &mut Cache, scene: &Scene, palette: &Palette) {
+    let Cache { tables, plan, states, .. } = cache;
     if !plan.objects().iter().any(|plan| plan.stages().needs_tables()) {
         return;
     }
     tables.use_palette(palette);
-    for ((object, plan), state) in scene.objects().iter().zip(plan.objects()).zip(states) {
+    for ((object, plan), state) in scene.objects().iter().zip(plan.objects()).zip(&*states) {
         if plan.stages().has_fog() {
             tables.ensure_fog(scene.fog.map(|fog| fog.color));
         }
@@ -96,7 +86,7 @@ impl Pipelines<'_> {
             Some(Image { texture, .. }) => {
                 Texels::new(texture.texels(), texture.width_bits(), texture.height_bits()).ok()
             }
-            None if plan.stages().neutral_image && channels.is_none() => Texels::new(&ONE_TEXEL, 0, 0).ok(),
+            None if plan.stages().neutral_image && channels.is_none() => Some(Texels::ONE),
             None => None,
         };
         let texture =

@@ -56,11 +56,6 @@ impl Shares {
     pub(super) fn add(&mut self, shading: FaceShading, triangles: u64) {
         self.0[shading.index()] += triangles;
     }
-
-    /// Counts the rest of the `drawn` triangles, those that have not been counted yet.
-    pub(super) fn complete(&mut self, shading: FaceShading, drawn: u64) {
-        self.add(shading, drawn - self.0.iter().sum::<u64>());
-    }
 }
 
 /// The number of triangles with a shading.

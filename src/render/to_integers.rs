@@ -17,6 +17,7 @@ use crate::integer::{
 };
 use crate::light::{Light, Material};
 use crate::mesh::Mesh;
+use crate::mesh::wide::{sub, widen};
 use crate::raster::{Interpolation, Vertex};
 use crate::scene::{self, Scene, Shared, UpAxis};
 use crate::settings::Shading;
@@ -48,10 +49,7 @@ impl Converted {
             UpAxis::Y => [x, y, z],
             UpAxis::Z => [x, z, -y],
         };
-        let from_pivot = |p: &Vec3| {
-            let (p, pivot) = (p.to_array(), object.pivot.to_array());
-            upright([0, 1, 2].map(|i| f64::from(p[i]) - f64::from(pivot[i])))
-        };
+        let from_pivot = |p: &Vec3| upright(sub(widen(*p), widen(object.pivot)));
         let farthest = mesh.positions().iter().flat_map(from_pivot).fold(0.0_f64, |far, c| far.max(libm::fabs(c)));
         let exponent = exponent_to_reach(farthest);
         let scale = libm::ldexp(1.0, exponent);
@@ -158,11 +156,7 @@ impl IntegerPath {
         self.convert(scene.objects());
 
         // From here on everything is relative to the eye.
-        let eye = scene.camera.eye;
-        let from_eye = |p: Vec3| {
-            let (p, eye) = (p.to_array(), eye.to_array());
-            [0, 1, 2].map(|i| f64::from(p[i]) - f64::from(eye[i]))
-        };
+        let from_eye = |p: Vec3| sub(widen(p), widen(scene.camera.eye));
         let near = f64::from(scene.camera.near);
         let mut farthest = near;
         for (object, prepared) in scene.objects().iter().zip(&self.objects) {
@@ -282,7 +276,7 @@ fn fixed_mesh<'a>(meshes: &'a [Converted], prepared: &Prepared, object: &'a scen
         closed: object.mesh().is_outward(),
         twins: object.mesh().twins(),
         exponent: prepared.exponent,
-        vertex_surfaces: object.vertex_surfaces(),
+        vertex_surfaces: object.mesh().vertex_surfaces(),
         triangle_surfaces: object.mesh().triangle_surfaces(),
     };
     FixedMesh { parts, radius: converted.radius, surfaces: object.mesh().surfaces().len() }

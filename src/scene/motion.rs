@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use super::{LightId, ObjectId};
 use crate::angle::Angle;
+use crate::mesh::wide::widen;
 
 /// Something in a scene that moves.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -95,13 +96,8 @@ impl Path {
             }
             Self::Circle { centre, from, towards, .. } => {
                 let (sine, cosine) = libm::sincos(part * TAU);
-                let along =
-                    |c: f32, a: f32, b: f32| (f64::from(c) + f64::from(a) * cosine + f64::from(b) * sine) as f32;
-                Vec3::new(
-                    along(centre.x, from.x, towards.x),
-                    along(centre.y, from.y, towards.y),
-                    along(centre.z, from.z, towards.z),
-                )
+                let [centre, from, towards] = [centre, from, towards].map(widen);
+                Vec3::from_array([0, 1, 2].map(|i| (centre[i] + from[i] * cosine + towards[i] * sine) as f32))
             }
         }
     }

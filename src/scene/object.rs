@@ -9,6 +9,7 @@ use super::{ObjectId, Scene, Shared};
 use crate::angle::Angle;
 use crate::light::Material;
 use crate::mesh::Mesh;
+use crate::mesh::wide::{dot, sub, widen};
 
 /// The axis of a mesh that points up.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
@@ -150,17 +151,6 @@ impl Object {
         &self.mesh
     }
 
-    /// Copies the object with another mesh and its `materials`, and everything else unchanged.
-    pub(crate) fn with_mesh(&self, mesh: Shared<Mesh>, materials: Vec<Material>) -> Self {
-        Self { mesh, materials, ..self.clone() }
-    }
-
-    /// For each vertex of the mesh, the index of its surface.
-    #[must_use]
-    pub(crate) fn vertex_surfaces(&self) -> &[u16] {
-        self.mesh.vertex_surfaces()
-    }
-
     /// Checks the object; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
         if !(self.position.is_finite() && self.pivot.is_finite() && self.scale.is_finite()) {
@@ -267,8 +257,7 @@ pub(crate) struct Placement {
 impl Placement {
     /// The transform of an object without regard to its parent.
     pub(crate) fn of(object: &Object) -> Self {
-        let position = object.position.to_array().map(f64::from);
-        Self { turn: object.turn(), scale: f64::from(object.scale), position }
+        Self { turn: object.turn(), scale: f64::from(object.scale), position: widen(object.position) }
     }
 
     /// The transform applied within the coordinates of `parent`.
@@ -280,12 +269,8 @@ impl Placement {
 
     /// The world position of a point of the mesh.
     fn point(&self, pivot: Vec3, point: [f64; 3]) -> [f64; 3] {
-        let pivot = pivot.to_array().map(f64::from);
-        let from_pivot: [f64; 3] = core::array::from_fn(|i| point[i] - pivot[i]);
-        core::array::from_fn(|i| {
-            let turned: f64 = self.turn[i].iter().zip(from_pivot).map(|(a, b)| a * b).sum();
-            self.position[i] + self.scale * turned
-        })
+        let from_pivot = sub(point, widen(pivot));
+        core::array::from_fn(|i| self.position[i] + self.scale * dot(self.turn[i], from_pivot))
     }
 
     fn is_finite(&self) -> bool {
@@ -370,6 +355,13 @@ impl From<Shared<Mesh>> for Object {
     fn from(mesh: Shared<Mesh>) -> Self {
         Self::new(mesh)
     }
+}
+
+/// Copies an object with another mesh and a material for each of its surfaces. No vertex of the mesh may be shared by two
+/// surfaces.
+#[must_use]
+pub fn with_mesh(object: &Object, mesh: Shared<Mesh>, materials: Vec<Material>) -> Object {
+    Object { mesh, materials, ..object.clone() }
 }
 
 /// The rotation matrix of angles about x, y and z, by rows: z is applied first, then y, then x.

@@ -11,9 +11,7 @@
 //! G171). Setting a read index leaves the address one higher, so 3C8h then reads one more. Sources: IBM PS/2 technical
 //! reference, video subsystem; FreeVGA; DOSBox `vga_dac.cpp`, which does the same.
 
-use core::ops::{Bound, RangeBounds};
-
-use crate::palette::{BIOS, Palette, Rgb};
+use crate::palette::{BIOS, Rgb};
 
 /// The palette registers of the card.
 #[derive(Clone, Debug)]
@@ -22,8 +20,8 @@ pub struct Dac {
     pub(super) shown: [u32; 256],
     /// The pixel mask: every pixel's byte is ANDed with it on its way to the table.
     pub(super) mask: u8,
-    address: u8,
-    reading: bool,
+    pub(super) address: u8,
+    pub(super) reading: bool,
     /// The next channel: 0 red, 1 green, 2 blue.
     channel: u8,
     /// The partly written colour, in 6 bits.
@@ -73,24 +71,9 @@ impl Dac {
         self.shown[usize::from(index)] = color.on_dac().to_u32();
     }
 
-    pub(super) fn write_index(&mut self, index: u8) {
-        self.address = index;
-        self.reading = false;
-        self.channel = 0;
-    }
-
-    pub(super) fn read_index(&mut self, index: u8) {
-        self.address = index.wrapping_add(1);
-        self.reading = true;
-        self.channel = 0;
-    }
-
-    pub(super) fn state(&self) -> u8 {
-        if self.reading { 3 } else { 0 }
-    }
-
-    pub(super) fn address(&self) -> u8 {
-        self.address
+    /// Begins to read or to write at this address.
+    pub(super) fn begin(&mut self, address: u8, reading: bool) {
+        (self.address, self.reading, self.channel) = (address, reading, 0);
     }
 
     pub(super) fn write_data(&mut self, value: u8) {
@@ -114,35 +97,5 @@ impl Dac {
             self.address = self.address.wrapping_add(1);
         }
         value
-    }
-
-    pub(super) fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
-        let t = u32::from(t.min(256));
-        // At most 255·256, so the shifted sum is a byte. Rounded down, as the DAC rounds.
-        let mix = |a: u8, b: u8| ((u32::from(a) * (256 - t) + u32::from(b) * t) >> 8) as u8;
-        for index in 0..=255 {
-            let (a, b) = (from[index], to[index]);
-            self.set(index, Rgb::new(mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)));
-        }
-    }
-
-    pub(super) fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
-        let first = match range.start_bound() {
-            Bound::Included(&i) => usize::from(i),
-            Bound::Excluded(&i) => usize::from(i) + 1,
-            Bound::Unbounded => 0,
-        };
-        let end = match range.end_bound() {
-            Bound::Included(&i) => usize::from(i) + 1,
-            Bound::Excluded(&i) => usize::from(i),
-            Bound::Unbounded => 256,
-        };
-        // `None` where the range runs backwards.
-        if let Some(entries) = self.shown.get_mut(first..end)
-            && !entries.is_empty()
-        {
-            // There are at most 256 entries, so the remainder is 0 to 255.
-            entries.rotate_right(steps.rem_euclid(entries.len() as i32) as usize);
-        }
     }
 }

@@ -122,8 +122,8 @@ impl Vga {
     pub fn write_port(&mut self, port: u16, value: u8) {
         match port {
             Dac::PIXEL_MASK => self.dac.mask = value,
-            Dac::READ_INDEX => self.dac.read_index(value),
-            Dac::WRITE_INDEX => self.dac.write_index(value),
+            Dac::READ_INDEX => self.dac.begin(value.wrapping_add(1), true),
+            Dac::WRITE_INDEX => self.dac.begin(value, false),
             Dac::DATA => self.dac.write_data(value),
             _ => {}
         }
@@ -136,8 +136,14 @@ impl Vga {
     pub fn read_port(&mut self, port: u16) -> u8 {
         match port {
             Dac::PIXEL_MASK => self.dac.mask,
-            Dac::READ_INDEX => self.dac.state(),
-            Dac::WRITE_INDEX => self.dac.address(),
+            Dac::READ_INDEX => {
+                if self.dac.reading {
+                    3
+                } else {
+                    0
+                }
+            }
+            Dac::WRITE_INDEX => self.dac.address,
             Dac::DATA => self.dac.read_data(),
             Self::INPUT_STATUS => self.beam.status(),
             _ => 0xFF,
@@ -177,17 +183,20 @@ impl Vga {
     /// Its ramps are those of the palette that was last set.
     #[must_use]
     pub fn palette(&self) -> Palette {
-        let mut colors = [Rgb::BLACK; 256];
-        for (pixel, color) in (0..=255).zip(&mut colors) {
-            *color = self.dac.color_of(pixel);
-        }
-        Palette::from_parts(colors, self.ramps)
+        // Below 256.
+        Palette::from_parts(core::array::from_fn(|pixel| self.dac.color_of(pixel as u8)), self.ramps)
     }
 
     /// Loads the palette `t`/256 of the way from `from` to `to`: channel by channel `(from·(256 − t) + to·t) >> 8` in 8
     /// bits, then reduced to 6. `t` above 256 counts as 256. At 0 and 256 the result is `from` and `to` themselves.
     pub fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
-        self.dac.fade(from, to, t);
+        let t = u32::from(t.min(256));
+        // At most 255·256, so the shifted sum is a byte. Rounded down, as the DAC rounds.
+        let mix = |a: u8, b: u8| ((u32::from(a) * (256 - t) + u32::from(b) * t) >> 8) as u8;
+        for index in 0..=255 {
+            let (a, b) = (from[index], to[index]);
+            self.dac.set(index, Rgb::new(mix(a.r, b.r), mix(a.g, b.g), mix(a.b, b.b)));
+        }
         // At most 256.
         self.ramps = to.ramps() as u16;
     }
@@ -205,7 +214,14 @@ impl Vga {
     /// assert_eq!(vga.palette()[56], before[56]);
     /// ```
     pub fn cycle(&mut self, range: impl RangeBounds<u8>, steps: i32) {
-        self.dac.cycle(range, steps);
+        let range = (range.start_bound().map(|&i| usize::from(i)), range.end_bound().map(|&i| usize::from(i)));
+        // `None` where the range runs backwards.
+        if let Some(entries) = self.dac.shown.get_mut(range)
+            && !entries.is_empty()
+        {
+            // There are at most 256 entries, so the remainder is 0 to 255.
+            entries.rotate_right(steps.rem_euclid(entries.len() as i32) as usize);
+        }
     }
 }
 

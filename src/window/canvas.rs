@@ -20,12 +20,8 @@ impl<'a> Canvas<'a> {
     /// A standalone canvas with a picture as large as fits, as in a window of this size. `None` unless there are
     /// exactly `width` × `height` pixels.
     pub fn new(pixels: &'a mut [u32], width: usize, height: usize) -> Option<Canvas<'a>> {
-        (width.checked_mul(height) == Some(pixels.len())).then(|| Canvas {
-            pixels,
-            width,
-            height,
-            picture: Area::within(width, height),
-        })
+        (width.checked_mul(height) == Some(pixels.len()))
+            .then(|| Canvas::over(pixels, (width, height), Area::within(width, height)))
     }
 
     /// The pixels of a stretched picture; their number must match its size.

@@ -115,14 +115,6 @@ struct Queue {
     typed: String,
 }
 
-/// The keys that went down, in order; those of them that did so while Shift was down; and the keys that were released.
-#[derive(Default)]
-struct Pressed {
-    pressed: Vec<Key>,
-    shifted: Vec<Key>,
-    released: Vec<Key>,
-}
-
 /// Collects what happens in a window.
 #[derive(Clone, Default)]
 pub(super) struct Events {
@@ -150,47 +142,36 @@ impl Events {
     /// `size` the picture's columns and rows.
     pub(super) fn collect(&mut self, window: &Window, place: Area, size: (usize, usize)) -> Input {
         let Queue { keys, typed } = mem::take(&mut *self.queue.borrow_mut());
-        let Pressed { pressed, shifted, mut released } = self.follow(&keys);
+        let mut input = Input { typed, ..self.follow(&keys) };
         // A window without focus does not see key releases.
         let was_active = mem::replace(&mut self.active, window.is_active());
         if was_active && !self.active {
-            released.append(&mut self.held);
+            input.released.append(&mut self.held);
         }
 
         let to_frame = |(x, y)| place.to_picture(x, y, size);
-        let mouse = window.get_unscaled_mouse_pos(MouseMode::Discard).map(to_frame);
-        let buttons = Buttons {
+        input.mouse = window.get_unscaled_mouse_pos(MouseMode::Discard).map(to_frame);
+        input.buttons = Buttons {
             left: window.get_mouse_down(MouseButton::Left),
             middle: window.get_mouse_down(MouseButton::Middle),
             right: window.get_mouse_down(MouseButton::Right),
         };
-        let before = mem::replace(&mut self.buttons, buttons);
-        let (buttons_pressed, buttons_released) = (buttons.but_not(before), before.but_not(buttons));
+        let before = mem::replace(&mut self.buttons, input.buttons);
+        input.buttons_pressed = input.buttons.but_not(before);
+        input.buttons_released = before.but_not(input.buttons);
         // Tracked outside the window, too, while the button is still down.
         let anywhere = window.get_unscaled_mouse_pos(MouseMode::Pass).map(to_frame);
-        let drag = self.drag(anywhere.filter(|_| buttons.left));
-        let wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
+        input.drag = self.drag(anywhere.filter(|_| input.buttons.left));
+        input.wheel = window.get_scroll_wheel().map_or(0.0, |(_, notches)| notches * NOTCH);
         // The window fills in how long the frame took.
-        let (held, elapsed) = (self.held.clone(), 0.0);
-        Input {
-            pressed,
-            shifted,
-            held,
-            released,
-            elapsed,
-            typed,
-            mouse,
-            buttons,
-            buttons_pressed,
-            buttons_released,
-            drag,
-            wheel,
-        }
+        input.held.clone_from(&self.held);
+        input
     }
 
-    /// Applies key events in order and returns the keys that went down. Repeats of a held key do not count.
-    fn follow(&mut self, events: &[(Key, bool)]) -> Pressed {
-        let mut keys = Pressed::default();
+    /// Applies key events in order and returns the keys that went down or were released. Repeats of a held key do not
+    /// count.
+    fn follow(&mut self, events: &[(Key, bool)]) -> Input {
+        let mut keys = Input::default();
         for &(key, down) in events {
             let held = self.held.contains(&key);
             if down && !held {
