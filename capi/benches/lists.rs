@@ -6,27 +6,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Vertex};
-use mode13h_capi::abi::{Material, Mesh};
+use mode13h_capi::abi::{Material, Mesh, Vertex as Corner, VertexX as CornerX};
 use mode13h_capi::draw::{m13_draw, m13_draw_x};
 use mode13h_capi::target::{m13_target_depth, m13_target_init};
-
-#[derive(Clone, Copy)]
-#[repr(C)]
-struct Corner {
-    x: f32,
-    y: f32,
-    depth: f32,
-    shade: f32,
-}
-
-#[derive(Clone, Copy)]
-#[repr(C)]
-struct CornerX {
-    x: i32,
-    y: i32,
-    depth: u32,
-    shade: i32,
-}
 
 /// A wavy sheet of `columns` × `rows` quads, over the whole frame.
 fn sheet(columns: u16, rows: u16) -> (Vec<Corner>, Vec<u16>) {

@@ -30,7 +30,12 @@ pub(crate) struct Options {
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { id, out, force, json } = options;
     let Some(id) = id else {
-        return if *json { output::print_json(&list_json()) } else { output::print(&list()) };
+        if *json {
+            let cases: Vec<_> = CASES.iter().map(case_json).collect();
+            return output::print_json(&json!({ "schema": output::SCHEMA, "cases": cases }));
+        }
+        let line = |case: &Case| format!("{:<4}{}: {}\n", case.id, case.title, case.sentence);
+        return output::print(&CASES.iter().map(line).collect::<String>());
     };
     let Some(case) = hard_cases::by_id(id) else {
         let ids: Vec<&str> = CASES.iter().map(|case| case.id).collect();
@@ -49,14 +54,6 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(_) => Ok(()),
         None => output::say(&format!("{}: {}\n", path.display(), case.sentence)),
     }
-}
-
-fn list() -> String {
-    CASES.iter().map(|case| format!("{:<4}{}: {}\n", case.id, case.title, case.sentence)).collect()
-}
-
-fn list_json() -> Value {
-    json!({ "schema": output::SCHEMA, "cases": CASES.iter().map(case_json).collect::<Vec<_>>() })
 }
 
 fn case_json(case: &Case) -> Value {

@@ -8,6 +8,7 @@ use mode13h::plan::{Effect, Plan, Row};
 use mode13h::render::{Renderer, Stats};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
+use mode13h_lab::lines::lines;
 use serde::Serialize;
 
 use crate::effect_cost::EffectCost;
@@ -287,14 +288,7 @@ fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
 
 /// Wraps words into lines that end before `width`. All begin at `indent`; the first follows the text already there.
 fn wrapped(words: &str, indent: usize, width: usize) -> String {
-    let indentation = " ".repeat(indent);
-    let options = textwrap::Options::new(width)
-        .initial_indent(&indentation)
-        .subsequent_indent(&indentation)
-        .word_separator(textwrap::WordSeparator::AsciiSpace)
-        .word_splitter(textwrap::WordSplitter::NoHyphenation)
-        .break_words(false);
-    textwrap::fill(words, options).trim_start().to_string() + "\n"
+    lines(words, width - indent).join(&format!("\n{}", " ".repeat(indent))) + "\n"
 }
 
 #[cfg(test)]

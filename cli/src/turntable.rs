@@ -116,7 +116,11 @@ impl Turntable {
         let mut stage = Turntable::new(studio(object, up)?, Shown::Model);
         if let Some(playback) = stage.play(moving, false, false) {
             // Even so, its angles are set from the time.
-            stage.scene.motions.iter_mut().for_each(|motion| turn_by(motion, 0.0));
+            for motion in &mut stage.scene.motions {
+                if let Motion::Spin { turns, .. } = motion {
+                    *turns = [0.0; 3];
+                }
+            }
             stage.camera = playback.framing(&stage.scene.objects()[0]);
             stage.playbacks.push(playback);
         }
@@ -383,13 +387,6 @@ impl Turntable {
         for material in self.materials.iter_mut().flatten() {
             (material.texture, material.environment, material.blend) = (None, None, Blend::Opaque);
         }
-    }
-}
-
-/// Sets the speed, in turns per second about y alone, of a motion that spins.
-fn turn_by(motion: &mut Motion, per_second: f64) {
-    if let Motion::Spin { turns, .. } = motion {
-        *turns = [0.0, per_second, 0.0];
     }
 }
 

@@ -11,7 +11,7 @@
 pub mod cost;
 pub mod explain;
 pub mod hard_cases;
-mod lines;
+pub mod lines;
 pub mod museum;
 
 pub mod truth;

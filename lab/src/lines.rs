@@ -3,7 +3,8 @@
 use textwrap::{Options, WordSeparator, WordSplitter};
 
 /// Breaks a text into lines of at most `columns` characters, only at spaces.
-pub(crate) fn lines(text: &str, columns: usize) -> Vec<String> {
+#[must_use]
+pub fn lines(text: &str, columns: usize) -> Vec<String> {
     let options = Options::new(columns)
         .word_separator(WordSeparator::AsciiSpace)
         .word_splitter(WordSplitter::NoHyphenation)

@@ -28,15 +28,11 @@ fn box8() -> Mesh {
     Mesh::new(positions.collect(), triangles).unwrap()
 }
 
-fn length(v: Vec3) -> f64 {
-    v.to_array().map(|c| f64::from(c).powi(2)).iter().sum::<f64>().sqrt()
-}
-
 /// Rounding to f32 moves each component by at most 2⁻²⁵, so the length by 2⁻²⁴; N6 requires 2⁻¹⁴.
 fn assert_unit(mesh: &Mesh) {
     assert_eq!(mesh.normals().len(), mesh.positions().len());
     for &normal in mesh.normals() {
-        assert!((length(normal) - 1.0).abs() < 1.0 / f64::from(1 << 23), "{normal}");
+        assert!((vector::length(wide(normal)) - 1.0).abs() < 1.0 / f64::from(1 << 23), "{normal}");
     }
 }
 

@@ -4,16 +4,13 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use crate::support::tried::Tried;
+use crate::support::vector::{self, wide};
 use mode13h::glam::Vec3;
 use mode13h::mesh::normals::face_normal;
 use mode13h::mesh::{Mesh, shapes};
 
 fn all() -> impl Iterator<Item = (&'static str, Mesh)> {
     shapes::NAMES.into_iter().map(|name| (name, shapes::by_name(name).unwrap()))
-}
-
-fn length(v: Vec3) -> f64 {
-    v.to_array().map(|c| f64::from(c).powi(2)).iter().sum::<f64>().sqrt()
 }
 
 #[test]
@@ -49,7 +46,7 @@ fn small_numbers_are_raised() {
 #[test]
 fn all_fit_the_unit_sphere_and_touch_it() {
     for (name, mesh) in all() {
-        let farthest = mesh.positions().iter().map(|&p| length(p)).fold(0.0, f64::max);
+        let farthest = mesh.positions().iter().map(|&p| vector::length(wide(p))).fold(0.0, f64::max);
         assert!(farthest <= 1.0 + 1e-15, "{name}: {farthest}");
         assert!(farthest > 0.999, "{name}: {farthest}");
     }
@@ -61,7 +58,7 @@ fn n6_normals_are_unit() {
     let mut tried = Tried::new("n6_normals_are_unit", 5_664);
     for (name, mesh) in all() {
         for &normal in mesh.normals() {
-            let off = (length(normal) - 1.0).abs();
+            let off = (vector::length(wide(normal)) - 1.0).abs();
             tried.worst("off from length 1", off);
             assert!(off < 1.0 / f64::from(1 << 23), "{name}: {normal}");
             tried.add(1);

@@ -1,6 +1,7 @@
 // Tests of the text and its figures: node web/text/test.mjs
 // The figures' results are compared with slow oracles in BigInt or in doubles.
 import assert from "node:assert/strict";
+import { test } from "node:test";
 import { readFileSync, readdirSync } from "node:fs";
 
 const here = new URL(".", import.meta.url);
@@ -413,16 +414,4 @@ function slowDepth(t, x, y) {
   return (part(t[1], t[2]) * t[0][2] + part(t[2], t[0]) * t[1][2] + part(t[0], t[1]) * t[2][2]) / w;
 }
 
-const only = process.argv[2];
-let failed = 0;
-for (const [name, test] of Object.entries(tests)) {
-  if (only && !name.includes(only)) continue;
-  try {
-    test();
-    console.log(`ok      ${name}`);
-  } catch (error) {
-    failed++;
-    console.log(`FAILED  ${name}\n        ${String(error.message).split("\n").slice(0, 6).join("\n        ")}`);
-  }
-}
-process.exit(failed ? 1 : 0);
+for (const [name, run] of Object.entries(tests)) test(name, run);

@@ -234,19 +234,6 @@ fn a_triangle_is_a_list_of_one() {
 /// counts shows, and however the sheet is cut up, no pixel is left out that the whole covers.
 #[test]
 fn clipped_neighbours_leave_no_hole() {
-    #[derive(Clone, Copy)]
-    #[repr(C)]
-    struct At {
-        x: f32,
-        y: f32,
-        w: f32,
-    }
-    #[repr(C)]
-    struct AtX {
-        x: i32,
-        y: i32,
-        w: i32,
-    }
     let memory = crate::Memory::new();
     // Each pixel drawn over another increases it by one.
     let counts: Vec<u8> = (0..65_536).map(|i| ((i & 255) as u8).saturating_add(1)).collect();
@@ -265,7 +252,7 @@ fn clipped_neighbours_leave_no_hole() {
         let mut grid = Vec::new();
         for j in 0..=n {
             for i in 0..=n {
-                grid.push(At { x: linear(x, i, j), y: linear(y, i, j), w: linear([w[0] + 4.0, w[1], w[2]], i, j) });
+                grid.push([linear(x, i, j), linear(y, i, j), linear([w[0] + 4.0, w[1], w[2]], i, j)]);
             }
         }
         let mut indices: Vec<u16> = Vec::new();
@@ -276,13 +263,7 @@ fn clipped_neighbours_leave_no_hole() {
                 indices.extend([a, b, c, a, c, d]);
             }
         }
-        let grid_x: Vec<AtX> = grid
-            .iter()
-            .map(|at| {
-                let [x, y, w] = [at.x, at.y, at.w].map(|c| (f64::from(c) * 65_536.0) as i32);
-                AtX { x, y, w }
-            })
-            .collect();
+        let grid_x: Vec<[i32; 3]> = grid.iter().map(|at| at.map(|c| (f64::from(c) * 65_536.0) as i32)).collect();
         for is_fixed in [false, true] {
             let mut pixels = vec![0_u8; 320 * 200];
             let canvas = target(&mut pixels, 320, 200, 320);

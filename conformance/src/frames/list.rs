@@ -12,9 +12,9 @@ use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::scene::{Camera, Fog, Object, Scene, Shared, UpAxis};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Settings, Shading, VertexPath};
-use mode13h::texture::Texture;
 
-use super::{Frame, Picture, Shape, shipped};
+use super::shipped::{self, texture};
+use super::{Frame, Picture, Shape};
 
 /// Every frame, in a fixed order.
 pub(super) fn all() -> Vec<Frame> {
@@ -452,10 +452,6 @@ fn each(scene: &mut Scene, change: impl Fn(&mut Material)) {
 /// A palette of all kinds of colours, without ramps.
 fn colors() -> Option<Palette> {
     builtin::by_name("cube").map(|builtin| builtin.palette.clone())
-}
-
-fn texture(name: &str) -> Option<Shared<Texture>> {
-    name.parse::<Texture>().ok().map(Shared::new)
 }
 
 fn textured(scene: &mut Scene, name: &str, mapping: Mapping, mipmaps: bool) {

@@ -107,7 +107,7 @@ fn stretched(mesh: &Mesh, factors: Vec3) -> Mesh {
     mesh.stretched(factors).unwrap_or_else(|_| mesh.clone())
 }
 
-fn texture(name: &str) -> Option<Shared<Texture>> {
+pub(super) fn texture(name: &str) -> Option<Shared<Texture>> {
     name.parse::<Texture>().ok().map(Shared::new)
 }
 

@@ -151,7 +151,7 @@ pub(super) fn png(case: &Case, comparison: &Comparison) -> Result<Vec<u8>, Pictu
         for (i, mark) in (0..).zip(&marks) {
             let top = below + LINE * i;
             let cell = Point::new(MARGIN, top);
-            fill(&mut frame, cell, ZOOM, Ink::Empty.index());
+            rectangle(&mut frame, cell, (ZOOM, ZOOM), Ink::Empty.index());
             draw_mark(&mut frame, cell, *mark, Sides::ALL);
             let text = format!("{}: {}", mark.words(), pixels_in_words(comparison.fault.count(*mark)));
             words(&mut frame, MARGIN + 24, top, &text, Ink::Words, &FONT_9X15);
@@ -187,10 +187,6 @@ fn words(frame: &mut Frame<'_>, x: i32, y: i32, text: &str, ink: Ink, font: &Mon
 fn rectangle(frame: &mut Frame<'_>, at: Point, size: (i32, i32), index: Index) {
     let area = Rectangle::new(at, Size::new(size.0 as u32, size.1 as u32));
     let Ok(()) = area.into_styled(PrimitiveStyle::with_fill(index)).draw(frame);
-}
-
-fn fill(frame: &mut Frame<'_>, at: Point, side: i32, index: Index) {
-    rectangle(frame, at, (side, side), index);
 }
 
 fn enlarge(frame: &mut Frame<'_>, at: Point, panel: &Panel, outline: &[Segment], inks: &Inks) {

@@ -30,15 +30,10 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 /// mean square error against `lit` and time per frame, the efficient ones filled and joined; each budget is one too.
 #[must_use]
 pub fn chart_svg(study: &Study) -> String {
-    svg((860, 520), |root| draw(study, root))
-}
-
-/// An SVG file, or as much of it as could be drawn.
-pub(super) fn svg(size: (u32, u32), draw: impl FnOnce(&Area<'_>) -> Outcome) -> String {
     let mut text = String::new();
-    let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+    let root = SVGBackend::with_string(&mut text, (860, 520)).into_drawing_area();
     // Writing to a string cannot fail.
-    if draw(&root).and_then(|()| Ok(root.present()?)).is_err() {
+    if draw(study, &root).and_then(|()| Ok(root.present()?)).is_err() {
         drop(root);
         return String::from("<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>");
     }
