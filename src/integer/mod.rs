@@ -153,13 +153,7 @@ impl fmt::Display for IntegerError {
             Self::Count { what, given, needed } => write!(f, ": {given} {what} given where {needed} are needed"),
             Self::Position { vertex } | Self::NormalNotUnit { vertex } => write!(f, ": vertex {vertex} is not"),
             Self::IndexOutOfRange { triangle } => write!(f, ": triangle {triangle} does not"),
-            Self::Size
-            | Self::FieldOfView
-            | Self::Near
-            | Self::Direction
-            | Self::Scale
-            | Self::TooFar
-            | Self::Light => Ok(()),
+            _ => Ok(()),
         }
     }
 }

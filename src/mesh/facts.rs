@@ -8,7 +8,7 @@ use super::normals::face_normal;
 use super::wide::dot;
 
 /// The derived properties of a mesh.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Facts {
     /// The index of each vertex's surface.
     vertex_surfaces: Vec<u16>,
@@ -16,13 +16,6 @@ pub(super) struct Facts {
     longest_edges: (f32, f32),
     steepest_texcoords: Vec<f64>,
     is_faceted: bool,
-}
-
-/// Facts are derived from the mesh, so equal meshes have equal facts.
-impl PartialEq for Facts {
-    fn eq(&self, _: &Self) -> bool {
-        true
-    }
 }
 
 impl Mesh {

@@ -113,9 +113,7 @@ impl Mesh {
         triangles: Vec<[u32; 3]>,
     ) -> Result<Self, MeshError> {
         check(&positions, &triangles)?;
-        if normals.len() != positions.len() {
-            return Err(MeshError::Count { what: "normals", given: normals.len(), needed: positions.len() });
-        }
+        count("normals", normals.len(), positions.len())?;
         for (vertex, normal) in normals.iter_mut().enumerate() {
             if !normal.is_finite() {
                 return Err(MeshError::NormalNotFinite { vertex });
@@ -130,10 +128,7 @@ impl Mesh {
     /// # Errors
     /// A different number of pairs than of vertices; a pair that is not finite.
     pub fn with_texcoords(mut self, texcoords: Vec<Vec2>) -> Result<Self, MeshError> {
-        let (given, needed) = (texcoords.len(), self.positions.len());
-        if given != needed {
-            return Err(MeshError::Count { what: "texture coordinates", given, needed });
-        }
+        count("texture coordinates", texcoords.len(), self.positions.len())?;
         if let Some(vertex) = texcoords.iter().position(|t| !t.is_finite()) {
             return Err(MeshError::TexcoordNotFinite { vertex });
         }
@@ -146,10 +141,7 @@ impl Mesh {
     /// # Errors
     /// A different number of indices than of triangles; an index that is not below the number of surfaces.
     pub fn with_surfaces(mut self, surfaces: Vec<Surface>, triangle_surfaces: Vec<u16>) -> Result<Self, MeshError> {
-        let (given, needed) = (triangle_surfaces.len(), self.triangles.len());
-        if given != needed {
-            return Err(MeshError::Count { what: "triangle surfaces", given, needed });
-        }
+        count("triangle surfaces", triangle_surfaces.len(), self.triangles.len())?;
         if let Some(triangle) = triangle_surfaces.iter().position(|&s| usize::from(s) >= surfaces.len()) {
             return Err(MeshError::SurfaceOutOfRange { triangle });
         }
@@ -317,4 +309,9 @@ fn check(positions: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), MeshError> {
         Some(triangle) => Err(MeshError::IndexOutOfRange { triangle }),
         None => Ok(()),
     }
+}
+
+/// Checks that a list has as many entries as are needed.
+fn count(what: &'static str, given: usize, needed: usize) -> Result<(), MeshError> {
+    if given == needed { Ok(()) } else { Err(MeshError::Count { what, given, needed }) }
 }

@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::{Mesh, MeshError};
+use super::{Mesh, MeshError, count};
 
 impl Mesh {
     /// Copies the mesh with new positions and normals, one of each per vertex. The normals are normalised; triangles,
@@ -29,10 +29,7 @@ impl Mesh {
     /// # Errors
     /// The errors of [`with_normals`](Self::with_normals); a different number of positions than of vertices.
     pub fn with_vertices(&self, positions: Vec<Vec3>, normals: Vec<Vec3>) -> Result<Self, MeshError> {
-        let (given, needed) = (positions.len(), self.positions.len());
-        if given != needed {
-            return Err(MeshError::Count { what: "positions", given, needed });
-        }
+        count("positions", positions.len(), self.positions.len())?;
         let mut mesh = Self::with_normals(positions, normals, self.triangles.clone())?;
         mesh.texcoords.clone_from(&self.texcoords);
         mesh.surfaces.clone_from(&self.surfaces);

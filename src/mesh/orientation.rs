@@ -5,6 +5,7 @@
 //! Predicates", 1997. Products of three differences of f32 values neither overflow nor underflow f64: every term is a
 //! multiple of 2⁻⁴⁴⁷ and less than 2³⁹⁰.
 
+use alloc::vec::Vec;
 use core::cmp::Ordering;
 
 use glam::Vec3;
@@ -12,74 +13,67 @@ use glam::Vec3;
 /// Returns which side of the face `a`, `b`, `c` the point `d` lies on: `Greater` in front (where
 /// the face is counter-clockwise), `Equal` in its plane, `Less` behind.
 pub(super) fn side(a: Vec3, b: Vec3, c: Vec3, d: Vec3) -> Ordering {
+    let a = a.to_array();
     // Rows: b − a, c − a, d − a; each difference is exactly high + low.
     let rows = [b, c, d].map(|p| {
-        [two_difference(p.x, a.x), two_difference(p.y, a.y), two_difference(p.z, a.z)] //
+        let p = p.to_array();
+        [0, 1, 2].map(|i| two_sum(f64::from(p[i]), -f64::from(a[i])))
     });
 
     let mut determinant = 0.0;
     let mut magnitude = 0.0;
     for &(x, y, z, sign) in &PERMUTATIONS {
-        let term = sign * rows[0][x].0 * rows[1][y].0 * rows[2][z].0;
+        let term = sign * rows[0][x][0] * rows[1][y][0] * rows[2][z][0];
         determinant += term;
         magnitude += libm::fabs(term);
     }
     // Three differences, two products and five sums, each with a relative error of at most 2⁻⁵³: under 11 · 2⁻⁵³ of
     // `magnitude` in all, and 2⁻⁴⁸ is 32 · 2⁻⁵³.
     let bound = magnitude * (1.0 / 281_474_976_710_656.0);
-    if determinant > bound {
-        return Ordering::Greater;
-    }
-    if determinant < -bound {
-        return Ordering::Less;
+    if libm::fabs(determinant) > bound {
+        return determinant.total_cmp(&0.0);
     }
 
-    let mut sum = Expansion::new();
+    // An exact sum: non-overlapping components in order of increasing magnitude. There are six terms of 16 products of
+    // two components each, and an addition adds at most one component.
+    let mut sum = Vec::with_capacity(6 * 16 * 2);
     for &(x, y, z, sign) in &PERMUTATIONS {
-        for first in parts(rows[0][x]) {
-            for second in parts(rows[1][y]) {
-                let (high, low) = two_product(first, second);
-                for third in parts(rows[2][z]) {
-                    for product in [high, low] {
-                        let (high, low) = two_product(product, sign * third);
-                        sum.add(low);
-                        sum.add(high);
+        for first in rows[0][x] {
+            for second in rows[1][y] {
+                let products = two_product(first, second);
+                for third in rows[2][z] {
+                    for product in products {
+                        let [high, low] = two_product(product, sign * third);
+                        grow(&mut sum, low);
+                        grow(&mut sum, high);
                     }
                 }
             }
         }
     }
-    sum.sign()
+    // The greatest component outweighs all others.
+    sum.last().map_or(Ordering::Equal, |greatest| greatest.total_cmp(&0.0))
 }
 
 /// The column taken from each of the three rows, and the sign of the term.
 const PERMUTATIONS: [(usize, usize, usize, f64); 6] =
     [(0, 1, 2, 1.0), (0, 2, 1, -1.0), (1, 2, 0, 1.0), (1, 0, 2, -1.0), (2, 0, 1, 1.0), (2, 1, 0, -1.0)];
 
-fn parts(pair: (f64, f64)) -> [f64; 2] {
-    [pair.0, pair.1]
-}
-
-/// `a − b` as a rounded value and its error.
-fn two_difference(a: f32, b: f32) -> (f64, f64) {
-    two_sum(f64::from(a), -f64::from(b))
-}
-
 /// `a + b` as a rounded value and its error (Knuth).
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+fn two_sum(a: f64, b: f64) -> [f64; 2] {
     let sum = a + b;
     let from_b = sum - a;
     let from_a = sum - from_b;
-    (sum, (a - from_a) + (b - from_b))
+    [sum, (a - from_a) + (b - from_b)]
 }
 
 /// `a · b` as a rounded value and its error (Dekker's method, since not every machine has a fused multiply).
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+fn two_product(a: f64, b: f64) -> [f64; 2] {
     let product = a * b;
     let (a_high, a_low) = split(a);
     let (b_high, b_low) = split(b);
     let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-    (product, error)
+    [product, error]
 }
 
 /// Splits into 26 and 26 bits; 2²⁷ + 1 is Dekker's constant for 53 bits.
@@ -89,48 +83,18 @@ fn split(a: f64) -> (f64, f64) {
     (high, a - high)
 }
 
-/// An exact sum: non-overlapping components in order of increasing magnitude.
-struct Expansion {
-    components: [f64; Self::MAX],
-    len: usize,
-}
-
-impl Expansion {
-    /// Six terms of 2 · 2 · 2 · 2 products of two components each; an addition adds at most one component.
-    const MAX: usize = 6 * 16 * 2;
-
-    fn new() -> Self {
-        Self { components: [0.0; Self::MAX], len: 0 }
+/// Adds a value to an exact sum: Shewchuk's GROW-EXPANSION, with zeros dropped.
+fn grow(sum: &mut Vec<f64>, mut value: f64) {
+    // Most are 0, and need no pass over the sum.
+    if value == 0.0 {
+        return;
     }
-
-    /// Shewchuk's GROW-EXPANSION, with zeros dropped.
-    fn add(&mut self, value: f64) {
-        if value == 0.0 {
-            return;
-        }
-        let mut carried = value;
-        let mut kept = 0;
-        for i in 0..self.len {
-            let (sum, error) = two_sum(carried, self.components[i]);
-            carried = sum;
-            if error != 0.0 {
-                self.components[kept] = error;
-                kept += 1;
-            }
-        }
-        if carried != 0.0 {
-            self.components[kept] = carried;
-            kept += 1;
-        }
-        self.len = kept;
-    }
-
-    /// The sign of the greatest component, which outweighs all others.
-    fn sign(&self) -> Ordering {
-        match self.components[..self.len].last() {
-            Some(greatest) => greatest.total_cmp(&0.0),
-            None => Ordering::Equal,
-        }
+    sum.retain_mut(|component| {
+        [value, *component] = two_sum(value, *component);
+        *component != 0.0
+    });
+    if value != 0.0 {
+        sum.push(value);
     }
 }
 

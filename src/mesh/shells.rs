@@ -79,9 +79,9 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
     // Triangles fit into 32 bits, see `Mesh::MAX_COUNT`.
     let mut sets = Sets::new(triangles as u32);
     let mut has_others = false;
-    for mut faces in edges.faces_by_edge() {
-        match (faces.next(), faces.next(), faces.next()) {
-            (Some((_, a)), Some((_, b)), None) => sets.join(a as u32 / 3, b as u32 / 3),
+    for (_, faces) in edges.each() {
+        match faces {
+            [a, b] => sets.join(a.1 / 3, b.1 / 3),
             _ => has_others = true,
         }
     }
@@ -90,9 +90,9 @@ fn shells(triangles: usize, edges: &Edges) -> (Vec<u32>, usize) {
         let mut joins = Vec::new();
         // For each face its set, with a last bit that is set if it runs down the edge.
         let mut here: Vec<u32> = Vec::new();
-        for faces in edges.faces_by_edge().filter(|faces| faces.clone().count() > 2) {
+        for (_, faces) in edges.each().filter(|(_, faces)| faces.len() > 2) {
             here.clear();
-            here.extend(faces.map(|(down, corner)| sets.of(corner as u32 / 3) << 1 | u32::from(down)));
+            here.extend(faces.iter().map(|&(to, corner)| sets.of(corner / 3) << 1 | to & 1));
             here.sort_unstable();
             let sum = |part: &[u32]| part.iter().map(|face| if face & 1 == 0 { 1 } else { -1 }).sum::<i32>();
             let parts = here.chunk_by(|a, b| a >> 1 == b >> 1);

@@ -6,27 +6,18 @@ use alloc::vec::Vec;
 
 use super::Mesh;
 
-/// No triangle uses the vertex, or none has so far.
+/// No surface, or no next vertex, so far.
 const NONE: u32 = u32::MAX;
 
 impl Mesh {
     /// Returns whether each vertex is used by triangles of one surface only.
     #[must_use]
     pub fn has_one_surface_a_vertex(&self) -> bool {
-        if self.surfaces.len() == 1 {
-            return true;
-        }
-        let mut surface_of = vec![NONE; self.positions.len()];
-        self.triangles.iter().zip(&self.triangle_surfaces).all(|(triangle, &surface)| {
-            triangle.iter().all(|&i| {
-                let seen = &mut surface_of[i as usize];
-                let first = *seen == NONE;
-                if first {
-                    *seen = u32::from(surface);
-                }
-                first || *seen == u32::from(surface)
-            })
-        })
+        // A vertex of several surfaces has one of them here, and differs from a triangle of another.
+        let of_vertices = self.vertex_surfaces();
+        let mut triangles = self.triangles.iter().zip(&self.triangle_surfaces);
+        self.surfaces.len() == 1
+            || triangles.all(|(triangle, surface)| triangle.iter().all(|&i| of_vertices[i as usize] == *surface))
     }
 
     /// Copies the mesh, splitting every vertex shared by several surfaces into one for each. New vertices come at the

@@ -168,12 +168,6 @@ impl Edges {
         self.edges.as_chunks::<2>().0.iter().map(|pair| pair.map(|(_, corner)| corner as usize))
     }
 
-    /// The faces at each edge: for each, whether it traverses the edge downward, from the higher point to the lower,
-    /// and the corner where that traversal starts, counted through all triangles.
-    pub(super) fn faces_by_edge(&self) -> impl Iterator<Item = impl Iterator<Item = (bool, usize)> + Clone> {
-        self.each().map(|(_, faces)| faces.iter().map(|&(to, corner)| (to & 1 == 1, corner as usize)))
-    }
-
     /// Calls `found` for triangles that lie back to back, with the same three points and opposite winding: first the
     /// list of those wound one way, then of those wound the other. Neither list is empty; each is in ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {

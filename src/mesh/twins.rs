@@ -68,9 +68,9 @@ pub(super) fn mistaken(
     let mut sheets = Sets::new(pairs.len() as u32);
     let (mut has_rim, mut touches) = (vec![false; pairs.len()], vec![false; pairs.len()]);
     let mut here: Vec<u32> = Vec::new();
-    for faces in edges.faces_by_edge() {
+    for (_, faces) in edges.each() {
         here.clear();
-        here.extend(faces.map(|(_, corner)| pair_of[corner / 3]));
+        here.extend(faces.iter().map(|&(_, corner)| pair_of[corner as usize / 3]));
         here.sort_unstable();
         // Both triangles of a pair share the edge.
         here.dedup();

@@ -29,19 +29,11 @@ impl Lut64K {
     /// Makes a table with `byte(high, low)` at every row and column, such as the shade table of
     /// Phong shading.
     #[must_use]
-    pub fn from_fn(byte: impl FnMut(u8, u8) -> u8) -> Self {
+    pub fn from_fn(mut byte: impl FnMut(u8, u8) -> u8) -> Self {
         let mut table = Self(Box::new([0; Self::BYTES]));
-        table.fill(byte);
+        // At most 248 + 7.
+        table.fill_by_eights(|high, low| core::array::from_fn(|i| byte(high, low + i as u8)));
         table
-    }
-
-    /// Refills this table as [`from_fn`](Self::from_fn) would.
-    fn fill(&mut self, mut byte: impl FnMut(u8, u8) -> u8) {
-        for (high, row) in (0..=255).zip(self.0.chunks_exact_mut(256)) {
-            for (low, entry) in (0..=255).zip(row) {
-                *entry = byte(high, low);
-            }
-        }
     }
 
     /// Refills this table, eight bytes of a row at a time: `bytes` receives their row and the first of their columns.

@@ -27,7 +27,6 @@ pub struct MedianCut {
 #[derive(Clone, Debug)]
 struct ColorBox {
     range: Range<usize>,
-    /// The total weight, and the weighted sums of red, green and blue.
     moments: Moments,
     /// The best cut; `None` if there is only one colour.
     cut: Option<Cut>,
@@ -43,11 +42,8 @@ struct Cut {
     gain: f64,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Moments {
-    weight: u64,
-    sums: [u64; 3],
-}
+/// The weighted sums of red, green and blue, and the total weight.
+type Moments = [u64; 4];
 
 impl MedianCut {
     /// Makes one box around weighted colours. Colours without weight are dropped, as are all beyond
@@ -102,32 +98,33 @@ impl MedianCut {
 
     /// The mean colour of each box, each channel rounded to the nearest; the colour itself for a box of one colour.
     pub fn means(&self) -> impl Iterator<Item = Rgb> + '_ {
-        self.boxes.iter().map(|b| b.moments.mean())
+        self.boxes.iter().map(|b| mean(b.moments))
     }
 }
 
 impl ColorBox {
     fn new(colors: &[(Rgb, u32)], range: Range<usize>) -> Self {
         // The moments at each value of each channel.
-        let mut by_value = vec![[Moments::default(); 256]; 3];
-        let mut moments = Moments::default();
+        let mut by_value = vec![[[0; 4]; 256]; 3];
+        let mut moments = [0; 4];
         for &(color, weight) in &colors[range.clone()] {
-            let one = Moments::of(color, weight);
-            moments += one;
-            for (values, v) in by_value.iter_mut().zip(channels(color)) {
-                values[usize::from(v)] += one;
+            let [r, g, b] = channels(color);
+            let one = [r, g, b, 1].map(|v| u64::from(v) * u64::from(weight));
+            add(&mut moments, one);
+            for (values, v) in by_value.iter_mut().zip([r, g, b]) {
+                add(&mut values[usize::from(v)], one);
             }
         }
         let mut best: Option<Cut> = None;
         for (channel, values) in by_value.iter().enumerate() {
-            let mut lower = Moments::default();
+            let mut lower = [0; 4];
             for (from, value) in (1..=255).zip(values) {
-                lower += *value;
-                let upper = moments - lower;
-                if value.weight == 0 || upper.weight == 0 {
+                add(&mut lower, *value);
+                let upper = [0, 1, 2, 3].map(|i| moments[i] - lower[i]);
+                if value[3] == 0 || upper[3] == 0 {
                     continue;
                 }
-                let gain = lower.gain_beside(upper);
+                let gain = gain_between(lower, upper);
                 if best.is_none_or(|best| gain > best.gain) {
                     best = Some(Cut { channel, from, gain });
                 }
@@ -137,42 +134,23 @@ impl ColorBox {
     }
 }
 
-impl Moments {
-    fn of(color: Rgb, weight: u32) -> Self {
-        let weight = u64::from(weight);
-        Self { weight, sums: channels(color).map(|v| weight * u64::from(v)) }
-    }
-
-    /// The sum of squares about the common mean minus that about two separate means: W₁·W₂/(W₁ + W₂) times the squared
-    /// distance between the two means.
-    fn gain_beside(self, other: Self) -> f64 {
-        let (w1, w2) = (self.weight as f64, other.weight as f64);
-        let d = [0, 1, 2].map(|i| self.sums[i] as f64 / w1 - other.sums[i] as f64 / w2);
-        w1 * w2 / (w1 + w2) * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
-    }
-
-    fn mean(self) -> Rgb {
-        // At most 255, like every colour. The sums are below 2⁶⁴, so doubling them could overflow.
-        let [r, g, b] = self.sums.map(|sum| ((sum + self.weight / 2) / self.weight.max(1)) as u8);
-        Rgb::new(r, g, b)
-    }
+fn add(sums: &mut Moments, more: Moments) {
+    sums.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
 }
 
-impl core::ops::AddAssign for Moments {
-    fn add_assign(&mut self, other: Self) {
-        self.weight += other.weight;
-        for (sum, more) in self.sums.iter_mut().zip(other.sums) {
-            *sum += more;
-        }
-    }
+/// The sum of squares about the common mean minus that about two separate means: W₁·W₂/(W₁ + W₂) times the squared
+/// distance between the two means.
+fn gain_between(a: Moments, b: Moments) -> f64 {
+    let (w1, w2) = (a[3] as f64, b[3] as f64);
+    let d = [0, 1, 2].map(|i| a[i] as f64 / w1 - b[i] as f64 / w2);
+    w1 * w2 / (w1 + w2) * (d[0] * d[0] + d[1] * d[1] + d[2] * d[2])
 }
 
-impl core::ops::Sub for Moments {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        Self { weight: self.weight - other.weight, sums: [0, 1, 2].map(|i| self.sums[i] - other.sums[i]) }
-    }
+fn mean(moments: Moments) -> Rgb {
+    let weight = moments[3];
+    // At most 255, like every colour. The sums are below 2⁶⁴, so doubling them could overflow.
+    let [r, g, b, _] = moments.map(|sum| ((sum + weight / 2) / weight.max(1)) as u8);
+    Rgb::new(r, g, b)
 }
 
 fn channels(color: Rgb) -> [u8; 3] {

@@ -12,13 +12,8 @@ use crate::simd::Lanes8;
 
 /// The six levels of a channel in the colour cube: 0, 52, 101, 154, 203, 255.
 const LEVELS: [u8; 6] = {
-    let mut levels = [0; 6];
-    let mut i = 0;
-    while i < 6 {
-        levels[i] = dac6_to_8(cube::LEVELS[i]);
-        i += 1;
-    }
-    levels
+    let [a, b, c, d, e, f] = cube::LEVELS;
+    [dac6_to_8(a), dac6_to_8(b), dac6_to_8(c), dac6_to_8(d), dac6_to_8(e), dac6_to_8(f)]
 };
 
 /// The position of a channel value among the levels.

@@ -92,3 +92,12 @@ fn quad(positions: &[Vec3], [a, b, c, d]: [u32; 4]) -> [[u32; 3]; 2] {
     let [pa, pb, pc, pd] = [a, b, c, d].map(|i| positions[i as usize]);
     if side(pa, pb, pc, pd) == Ordering::Greater { [[a, b, d], [b, c, d]] } else { [[a, b, c], [a, c, d]] }
 }
+
+/// The triangles of a grid of quads, row by row, whose vertices are numbered row by row from `first` on.
+fn grid(columns: u32, rows: u32, first: u32) -> impl Iterator<Item = [u32; 3]> {
+    (0..rows).flat_map(move |row| (0..columns).map(move |column| (row, column))).flat_map(move |(row, column)| {
+        let a = first + row * (columns + 1) + column;
+        let d = a + columns + 1;
+        [[a, a + 1, d + 1], [a, d + 1, d]]
+    })
+}

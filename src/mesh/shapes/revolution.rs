@@ -48,19 +48,12 @@ pub fn sphere(slices: u32, stacks: u32) -> Mesh {
     normals.push(Vec3::Y);
 
     let ring = |stack: u32| 1 + (stack - 1) * slices;
-    let (south, north) = (0, ring(stacks));
-    let mut triangles = Vec::new();
-    for i in 0..slices {
-        let next = (i + 1) % slices;
-        triangles.push([south, ring(1) + next, ring(1) + i]);
-    }
+    let (last, north) = (ring(stacks - 1), ring(stacks));
+    let mut triangles: Vec<_> = (0..slices).map(|i| [0, ring(1) + (i + 1) % slices, ring(1) + i]).collect();
     for stack in 1..stacks - 1 {
         band(&positions, slices, ring(stack), ring(stack + 1), &mut triangles);
     }
-    for i in 0..slices {
-        let next = (i + 1) % slices;
-        triangles.push([ring(stacks - 1) + i, ring(stacks - 1) + next, north]);
-    }
+    triangles.extend((0..slices).map(|i| [last + i, last + (i + 1) % slices, north]));
     Mesh::assemble(positions, normals, triangles)
 }
 

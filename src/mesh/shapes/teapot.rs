@@ -8,7 +8,7 @@ use alloc::vec::Vec;
 
 use glam::Vec3;
 
-use super::{MAX_PARTS, toward_zero};
+use super::{MAX_PARTS, grid, toward_zero};
 use crate::mesh::wide::{Wide, add, cross, length, narrow, scale, sub};
 use crate::mesh::{Mesh, topology};
 
@@ -147,13 +147,7 @@ impl Builder {
                 self.normals.push(narrow([normal[0], normal[2], -normal[1]]));
             }
         }
-        let at = |i: u32, j: u32| first + j * (n + 1) + i;
-        for j in 0..n {
-            for i in 0..n {
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                self.triangles.extend([[a, b, c], [a, c, d]]);
-            }
-        }
+        self.triangles.extend(grid(n, n, first));
     }
 
     /// Merges the vertices of neighbouring patches where the surface is smooth, and drops triangles with two corners at

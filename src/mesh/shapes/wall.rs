@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use glam::{Vec2, Vec3};
 
-use super::{MAX_PARTS, toward_zero};
+use super::{MAX_PARTS, grid, toward_zero};
 use crate::mesh::Mesh;
 
 /// A square in the plane z = 0 with its corners on the unit sphere, facing +z, cut into `columns` × `rows` rectangles
@@ -23,15 +23,7 @@ pub fn wall(columns: u32, rows: u32) -> Mesh {
         positions
             .extend((0..=columns).map(|column| Vec3::new(coordinate(column, columns), coordinate(row, rows), 0.0)));
     }
-    let mut triangles = Vec::new();
-    for row in 0..rows {
-        for column in 0..columns {
-            let a = row * (columns + 1) + column;
-            let d = a + columns + 1;
-            triangles.push([a, a + 1, d + 1]);
-            triangles.push([a, d + 1, d]);
-        }
-    }
     let normals = positions.iter().map(|_| Vec3::Z).collect();
-    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, triangles) }.with_facts()
+    Mesh { texcoords: Some(texcoords), ..Mesh::assemble(positions, normals, grid(columns, rows, 0).collect()) }
+        .with_facts()
 }
