@@ -785,6 +785,8 @@ mod tests {
             let last = stage.levels.expect("it has some").last();
             let (mut memory, mut buffers) = (listing::SpanData::new(), Buffers::default());
             let faces = PickedTriangles { triangles: &triangles, picks: Picks { picks: &[0], flat: &[] } };
+            // No face without area is picked.
+            prop_assume!(SortedTriangle::new(&faces.vertices(0)).area() != 0);
             let mut of_face = EffectSpans::new(faces, &pipeline, &mut memory, &mut buffers);
             let (mut rows, clip) = (Vec::new(), Rect { x0: 0, y0: 0, x1: 320, y1: 200 });
             of_face.walk(0, 0).rows(320, clip, |row| rows.push(row));
