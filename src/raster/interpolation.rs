@@ -4,7 +4,7 @@ use crate::fixed::IS_SMALL;
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// Those between the vertices have the names of the [`Shading`](crate::settings::Shading) that they draw:
+/// Interpolations between vertices are named as the [`Shading`](crate::settings::Shading) that they draw:
 ///
 /// | interpolation | differs from exact, in shades, by less than |
 /// |---|---|
