@@ -27,8 +27,9 @@ const _: () = assert!(ROUND_MAGIC.to_bits() as u32 == 0);
 
 /// Whether this is a size-optimised build (`capi/build`), for machines with little memory: it draws the same bytes with
 /// fewer loops, and long functions are not inlined. It lacks the shadings
-/// [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and [`Float`](crate::raster::Interpolation::GouraudFloat),
-/// which draw as `Gouraud` does.
+/// [`GouraudVintage`](crate::raster::Interpolation::GouraudVintage) and
+/// [`GouraudFloat`](crate::raster::Interpolation::GouraudFloat),
+/// which draw as `Gouraud88` does.
 pub(crate) const IS_SMALL: bool = cfg!(mode13h_small);
 
 /// Whether code size matters: in a size-optimised build, and in WebAssembly, which is loaded over a network. Loops that

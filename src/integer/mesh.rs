@@ -95,16 +95,15 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
             }
         }
         check_indices(triangles, positions.len())?;
-        let (twins, exponent, vertex_surfaces, triangle_surfaces) = (&[][..], 0, &[][..], &[][..]);
         let parts = FixedMeshParts {
             positions,
             normals,
             triangles,
             closed,
-            twins,
-            exponent,
-            vertex_surfaces,
-            triangle_surfaces,
+            twins: &[],
+            exponent: 0,
+            vertex_surfaces: &[],
+            triangle_surfaces: &[],
         };
         Ok(Self { parts, radius: most.isqrt() + 1, surfaces: 1 })
     }

@@ -13,7 +13,7 @@ pub(super) const MAX_ROWS: i32 = 16;
 pub(super) const MAX_WIDTH: i32 = 1_024 * 256;
 /// The most reseeded pieces of a row.
 pub(super) const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
-/// Its greatest height.
+/// The greatest height of such a box.
 pub(super) const MAX_HEIGHT: i32 = 4_096 * 256;
 /// The most squares of 4 × 4 pixels in the box, sides rounded up: 2³⁴ units.
 pub(super) const MAX_AREA_4X4: i32 = 1 << 14;

@@ -64,7 +64,7 @@ pub enum PolygonError {
         needed: usize,
     },
     /// The table interpolates shades in 8.8, linearly along edges and rows; it supports only flat,
-    /// [`Gouraud`](Interpolation::Gouraud88) and [`GouraudReseeded`](Interpolation::Gouraud88Reseeded).
+    /// [`Gouraud88`](Interpolation::Gouraud88) and [`Gouraud88Reseeded`](Interpolation::Gouraud88Reseeded).
     #[error("a table of rows cannot shade as {0:?}")]
     Interpolation(Interpolation),
 }
