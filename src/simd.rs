@@ -4,7 +4,10 @@
 //! The span kernels, in `crate::span::simd`, use the intrinsics of a level themselves. Everything else is written once,
 //! over [`Lanes8`] or plain arrays of eight lanes, and compiled for each level by `compiled_for_each_level!`.
 
-#![cfg_attr(simd_x86_64, expect(unsafe_code, reason = "code for processors found only when the program runs"))]
+#![cfg_attr(
+    any(simd_x86_64, simd_neon, simd_wasm),
+    expect(unsafe_code, reason = "vectors, for processors found only when the program runs; loads at masked indices")
+)]
 
 mod lanes;
 mod packed;
@@ -21,12 +24,10 @@ mod avx2;
 #[cfg(simd_x86_64)]
 mod avx512;
 #[cfg(simd_neon)]
-#[expect(unsafe_code, reason = "vector loads and stores")]
 mod neon;
 #[cfg(simd_x86_64)]
 mod sse2;
 #[cfg(simd_wasm)]
-#[expect(unsafe_code, reason = "vector loads and stores")]
 mod wasm;
 
 #[cfg(simd_x86_64)]

@@ -36,17 +36,21 @@ unsafe fn words(from: __m256i) -> __m128i {
     }
 }
 
-/// Moves eight words to registers by halves. Without the assembly, the compiler would extract one after the other, which
+/// Moves eight lanes to registers in pairs. Without the assembly, the compiler would extract one after the other, which
 /// takes twice as many operations on the vector.
 #[inline(always)]
-pub(super) unsafe fn words_by_halves(words: __m128i) -> [u16; 8] {
-    let (low, high);
+pub(super) unsafe fn lanes_by_pairs(from: __m256i) -> [usize; 8] {
+    let (a, b, c, d): (usize, usize, usize, usize);
     // SAFETY: the caller has AVX2.
     unsafe {
-        asm!("vmovq {}, {}", lateout(reg) low, in(xmm_reg) words, options(pure, nomem, nostack, preserves_flags));
-        asm!("vpextrq {}, {}, 1", lateout(reg) high, in(xmm_reg) words, options(pure, nomem, nostack, preserves_flags));
+        let (low, high) = (_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
+        asm!("vmovq {}, {}", lateout(reg) a, in(xmm_reg) low, options(pure, nomem, nostack, preserves_flags));
+        asm!("vpextrq {}, {}, 1", lateout(reg) b, in(xmm_reg) low, options(pure, nomem, nostack, preserves_flags));
+        asm!("vmovq {}, {}", lateout(reg) c, in(xmm_reg) high, options(pure, nomem, nostack, preserves_flags));
+        asm!("vpextrq {}, {}, 1", lateout(reg) d, in(xmm_reg) high, options(pure, nomem, nostack, preserves_flags));
     }
-    super::words_of([low, high])
+    let lower = |pair: usize| pair & 0xFFFF_FFFF;
+    [lower(a), a >> 32, lower(b), b >> 32, lower(c), c >> 32, lower(d), d >> 32]
 }
 
 /// Joins eight bytes that are loaded straight into a vector.
@@ -173,12 +177,12 @@ impl Lanes8 for Avx2 {
             let words = words(from);
             super::words_of([_mm_cvtsi128_si64(words), _mm_extract_epi64::<1>(words)])
         }
-        fn low_words_in_bulk(from: __m256i) -> [u16; 8] { words_by_halves(words(from)) }
         fn low_bytes(from: __m256i) -> [u8; 8] {
             let fours = _mm256_shuffle_epi8(from, _mm256_set1_epi32(0x0C08_0400));
             let eight = _mm_unpacklo_epi32(_mm256_castsi256_si128(fours), _mm256_extracti128_si256::<1>(fours));
             _mm_cvtsi128_si64(eight).to_le_bytes()
         }
+        fn to_indices(from: __m256i) -> [usize; 8] { lanes_by_pairs(from) }
         fn join_bytes(bytes: [u8; 8]) -> [u8; 8] { join_bytes(bytes) }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }

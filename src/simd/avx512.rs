@@ -6,7 +6,7 @@ use core::arch::x86_64::*;
 use glam::Vec3;
 
 use super::Avx512;
-use super::avx2::{join_bytes, words_by_halves};
+use super::avx2::{join_bytes, lanes_by_pairs};
 use super::lanes::{Lanes8, inlined, intrinsics};
 #[cfg(feature = "alloc")]
 use super::singles::{F32Lanes8, singles_of_256_bits};
@@ -57,8 +57,8 @@ impl Lanes8 for Avx512 {
             let words = _mm256_cvtepi32_epi16(from);
             super::words_of([_mm_cvtsi128_si64(words), _mm_extract_epi64::<1>(words)])
         }
-        fn low_words_in_bulk(from: __m256i) -> [u16; 8] { words_by_halves(_mm256_cvtepi32_epi16(from)) }
         fn low_bytes(from: __m256i) -> [u8; 8] { _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(from)).to_le_bytes() }
+        fn to_indices(from: __m256i) -> [usize; 8] { lanes_by_pairs(from) }
         fn join_bytes(bytes: [u8; 8]) -> [u8; 8] { join_bytes(bytes) }
         fn add_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_add_epi32(a, b) }
         fn sub_i32(a: __m256i, b: __m256i) -> __m256i { _mm256_sub_epi32(a, b) }

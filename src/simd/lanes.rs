@@ -3,6 +3,8 @@
 //! A token that implements [`Lanes8`] proves that the processor has its level. Each operation works lane by lane. Lanes
 //! 0 to 7 are in the order of the arrays they are loaded from.
 
+use crate::lanes::each;
+
 /// Methods that are inlined, one to a line where they fit.
 macro_rules! inlined {
     ($(fn $name:ident($self:ident $(, $argument:tt: $type:ty)*) $(-> $result:ty)? $body:block)*) => {
@@ -101,7 +103,7 @@ pub(crate) trait Lanes8: Copy {
     fn low_bytes(self, from: Self::I32) -> [u8; 8] {
         let mut lanes = [0; 8];
         self.store_i32(from, &mut lanes);
-        crate::lanes::each!(lane => lanes[lane] as u8)
+        each!(lane => lanes[lane] as u8)
     }
     /// The lower half of each lane. Where the level can, it is extracted from the vector rather than passed through
     /// memory, because each may be an index.
@@ -109,15 +111,41 @@ pub(crate) trait Lanes8: Copy {
     fn low_words(self, from: Self::I32) -> [u16; 8] {
         let mut lanes = [0; 8];
         self.store_i32(from, &mut lanes);
-        crate::lanes::each!(lane => lanes[lane] as u16)
+        each!(lane => lanes[lane] as u16)
     }
-    /// The [`low_words`](Self::low_words), with fewer operations that take longer: for full blocks of long rows.
+    /// Lanes from 0 to 0xFFFF as indices, moved to registers in the fastest way.
     #[inline(always)]
-    fn low_words_in_bulk(self, from: Self::I32) -> [u16; 8] {
-        self.low_words(from)
+    fn to_indices(self, from: Self::I32) -> [usize; 8] {
+        let words = self.low_words(from);
+        each!(lane => usize::from(words[lane]))
     }
-    /// These bytes, each of which may be loaded by an index, to be written at once. Where the level can, they are
-    /// joined in a vector, which takes longer, with fewer operations: for full blocks of long rows.
+    /// The bytes at these indices of at most 65,536 bytes: `from[index & (from.len() - 1)]`, or 0 if there are none.
+    #[inline(always)]
+    fn bytes_at(self, from: &[u8], at: Self::I32) -> [u8; 8] {
+        if from.is_empty() {
+            return [0; 8];
+        }
+        // At most 0xFFFF.
+        let last = (from.len() - 1).min(0xFFFF);
+        let at = self.to_indices(self.and_i32(at, self.splat_i32(last as i32)));
+        // SAFETY: an index with no other bits than those of the last one is not above it.
+        #[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
+        return unsafe { each!(lane => *from.get_unchecked(at[lane])) };
+        #[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
+        each!(lane => from[at[lane] & last])
+    }
+    /// The bytes of a table in these columns of the rows given by the second lowest byte of each lane.
+    #[inline(always)]
+    fn look_up(self, table: &[u8; 65_536], rows: Self::I32, columns: [u8; 8]) -> [u8; 8] {
+        let rows = self.to_indices(self.and_i32(rows, self.splat_i32(0xFF00)));
+        // SAFETY: an index has no bits above those of a row and a column.
+        #[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
+        return unsafe { each!(lane => *table.get_unchecked(rows[lane] | usize::from(columns[lane]))) };
+        #[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
+        each!(lane => table[(rows[lane] | usize::from(columns[lane])) & 0xFFFF])
+    }
+    /// These bytes, each of which may be loaded by an index, to be written at once: joined in a vector where the level
+    /// can.
     #[inline(always)]
     fn join_bytes(self, bytes: [u8; 8]) -> [u8; 8] {
         bytes

@@ -106,11 +106,30 @@ fn check_depth_test<S: Lanes8>(s: S, name: &str, random: &mut Numbers) {
     }
 }
 
+/// Bytes are those at the masked indices, whatever the indices and the number of bytes.
+fn check_bytes<S: Lanes8>(s: S, name: &str, (table, numbers): (&[u8; 65_536], [i32; 8])) {
+    let lanes = s.load_i32(&numbers);
+    assert_eq!(s.bytes_at(&[], lanes), [0; 8], "bytes_at of {name}");
+    for length in [1, 2, 3, 64, 100, 256, 1_000, 32_768, 40_000, 65_535, 65_536] {
+        let expected = numbers.map(|at| table[at as usize & (length - 1)]);
+        assert_eq!(s.bytes_at(&table[..length], lanes), expected, "bytes_at of {name}, {length}");
+    }
+    let columns = numbers.map(|of| (of >> 16) as u8);
+    let expected = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| table[numbers[k] as usize & 0xFF00 | usize::from(columns[k])]);
+    assert_eq!(s.look_up(table, lanes, columns), expected, "look_up of {name}");
+    assert_eq!(s.join_bytes(columns), columns, "join_bytes of {name}");
+}
+
 fn check<S: Eights>(s: S, name: &'static str) {
     check_singles(s, name);
     let c = Checker { s, name };
     let p = Portable;
     let mut random = Numbers(Random::again(15));
+    let mut table = [0; 65_536];
+    for byte in &mut table {
+        // The lowest eight bits.
+        *byte = random.bits() as u8;
+    }
     for round in 0..2_000 {
         let (a, b, d) = (random.f64s(), random.f64s(), random.f64s());
         let (fa, fb, fd) = (s.load_f64(&a), s.load_f64(&b), s.load_f64(&d));
@@ -188,6 +207,7 @@ fn check<S: Eights>(s: S, name: &'static str) {
             }
         }
 
+        check_bytes(s, name, (&table, i));
         c.mask("and", s.and(greater, s.is_greater(ii, s.splat_i32(0))), p.and(mask, p.is_greater(i, [0; 8])));
         c.mask(
             "but_not",

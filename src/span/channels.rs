@@ -184,6 +184,5 @@ pub(crate) fn mix_nearest_eight<S: Lanes8>(
     };
     let [red, green, blue] = [five_bits(channels[0]), five_bits(channels[1]), five_bits(channels[2])];
     let index = s.or_i32(s.or_i32(s.shl_i32(red, 7), s.shl_i32(green, 2)), s.shr_i32(blue, 3));
-    let index = s.low_words_in_bulk(index);
-    s.join_bytes(each!(k => map[usize::from(index[k] & 0x7FFF)]))
+    s.join_bytes(s.bytes_at(map, index))
 }

@@ -3,7 +3,7 @@
 use super::Texels;
 use super::tint::{NUMBERS_OF_PAIR, PairValues, Tint};
 use crate::fixed::IS_COMPACT;
-use crate::lanes::{LANES, NUMBERS, each};
+use crate::lanes::{LANES, NUMBERS};
 use crate::simd::Lanes8;
 
 /// Shows texels in the first `length` pixels of a row; the rest of the row does not change. `offsets` gives those of the
@@ -20,42 +20,39 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     if texels.bytes.is_empty() {
         return;
     }
-    let image = (texels, texels.bytes.len() - 1);
     let (mut rest, mut left) = (row, length);
     while left > 0 {
         let offsets = offsets.next();
-        let Some(&pixels) = rest.first_chunk::<LANES>() else {
+        let Some(pixels) = rest.first_chunk::<LANES>() else {
             // At the frame's end.
             let mut pixels = [0; LANES];
             for (to, pixel) in pixels.iter_mut().zip(&*rest) {
                 *to = *pixel;
             }
-            let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
-            for (k, pixel) in rest.iter_mut().take(left).enumerate() {
-                *pixel = texel(tint, rows, offsets, image, k % LANES);
+            let bytes = shown(s, (tint, tint.rows(s, along)), texels, offsets, &pixels);
+            for (pixel, byte) in rest.iter_mut().zip(bytes).take(left) {
+                *pixel = byte;
             }
             return;
         };
         // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged.
-        if left <= FOUR
-            && let Some(row) = rest.first_chunk_mut()
-        {
-            let (rows, offsets) = (tint.rows::<S, false>(s, along, &pixels), s.low_words(offsets));
+        if left <= FOUR {
             let mask = u32::MAX >> (8 * (FOUR - left));
-            let bytes = four_texels(tint, rows, offsets, image, 0);
+            let [bytes, _] = fours(s.join_bytes(shown(s, (tint, tint.rows(s, along)), texels, offsets, pixels)));
+            let Some(row) = rest.first_chunk_mut() else { return };
             *row = (bytes & mask | u32::from_le_bytes(*row) & !mask).to_le_bytes();
             return;
         }
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { return };
         if left < LANES {
-            let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets));
+            let rows = tint.rows(s, along);
             let mask = u64::MAX >> (8 * (LANES - left));
-            let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, image, k));
+            let bytes = s.join_bytes(shown(s, (tint, rows), texels, offsets, block));
             *block = (u64::from_le_bytes(bytes) & mask | u64::from_le_bytes(*block) & !mask).to_le_bytes();
             return;
         }
-        let (rows, offsets) = (tint.rows::<S, true>(s, along, block), s.low_words_in_bulk(offsets));
-        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, image, k)));
+        let rows = tint.rows(s, along);
+        *block = s.join_bytes(shown(s, (tint, rows), texels, offsets, block));
         (rest, left) = (behind, left - LANES);
     }
 }
@@ -77,11 +74,11 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
     for &stays in masks {
         if rest.len() < LANES {
             // At the frame's end.
-            let rows = tint.rows::<S, false>(s, along, &[0; LANES]);
-            let offsets = s.low_words(offsets.next());
-            for (k, (pixel, stay)) in rest.iter_mut().zip(stays.to_le_bytes()).enumerate() {
+            let rows = tint.rows(s, along);
+            let bytes = shown(s, (tint, rows), texels, offsets.next(), &[0; LANES]);
+            for (pixel, (byte, stay)) in rest.iter_mut().zip(bytes.into_iter().zip(stays.to_le_bytes())) {
                 if stay == 0 {
-                    *pixel = texel(tint, rows, offsets, (texels, texels.bytes.len() - 1), k % LANES);
+                    *pixel = byte;
                 }
             }
             break;
@@ -89,7 +86,7 @@ pub(crate) fn show_masked<S: Lanes8, T: Tint>(
         let Some((block, behind)) = rest.split_first_chunk_mut::<LANES>() else { break };
         rest = behind;
         if stays == u64::MAX {
-            tint.rows::<S, false>(s, along, block);
+            tint.rows(s, along);
             offsets.skip();
         } else {
             show_block::<S, T, true>(s, (block, stays), texels, (tint, along), &mut offsets);
@@ -110,22 +107,18 @@ pub(crate) fn show_block<S: Lanes8, T: Tint, const IN_BULK: bool>(
     if texels.bytes.is_empty() {
         return;
     }
-    let image = (texels, texels.bytes.len() - 1);
+    let (rows, offsets) = (tint.rows(s, along), offsets.next());
     // How many pixels are nearer is unpredictable: the others are rewritten unchanged. (Each case
     // extracts its own lanes: all of them, extracted up front, would not fit into the registers.)
     if IN_BULK && stays == 0 && !IS_COMPACT {
-        let (rows, offsets) = (tint.rows::<S, true>(s, along, block), s.low_words_in_bulk(offsets.next()));
-        *block = s.join_bytes(each!(k => texel(tint, rows, offsets, image, k)));
+        *block = s.join_bytes(shown(s, (tint, rows), texels, offsets, block));
     } else if stays >> 32 == u64::from(u32::MAX) {
-        let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets.next()));
-        let Some(four) = block.first_chunk_mut() else { return };
         // The lower half.
-        let stay = stays as u32;
-        let bytes = four_texels(tint, rows, offsets, image, 0);
+        let (stay, [bytes, _]) = (stays as u32, fours(shown(s, (tint, rows), texels, offsets, block)));
+        let Some(four) = block.first_chunk_mut() else { return };
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     } else {
-        let (rows, offsets) = (tint.rows::<S, false>(s, along, block), s.low_words(offsets.next()));
-        let bytes: [u8; LANES] = each!(k => texel(tint, rows, offsets, image, k));
+        let bytes = s.join_bytes(shown(s, (tint, rows), texels, offsets, block));
         *block = (u64::from_le_bytes(bytes) & !stays | u64::from_le_bytes(*block) & stays).to_le_bytes();
     }
 }
@@ -144,37 +137,31 @@ pub(crate) fn show_pair<S: Lanes8, T: Tint>(
     if texels.bytes.is_empty() {
         return;
     }
-    let (image, offsets) = ((texels, texels.bytes.len() - 1), s.low_words(offsets));
+    let rows = tint.rows(s, &mut tint.begin(s, values));
     // Tints that read pixels are not shown in pairs.
-    let rows = tint.rows::<S, false>(s, &mut tint.begin(s, values), &[0; LANES]);
-    let [low, high] = [four_texels(tint, rows, offsets, image, 0), four_texels(tint, rows, offsets, image, FOUR)];
+    let [low, high] = fours(s.join_bytes(shown(s, (tint, rows), texels, offsets, &[0; LANES])));
     for (at, bytes, stay) in [(a, low, stays as u32), (b, high, (stays >> 32) as u32)] {
         let Some(four) = all.get_mut(at..at + FOUR).and_then(<[u8]>::first_chunk_mut) else { return };
         *four = (bytes & !stay | u32::from_le_bytes(*four) & stay).to_le_bytes();
     }
 }
 
-/// Texel `k` of eight, as it is shown. `last` is the index of the last texel.
+/// Eight texels as they are shown in these pixels.
 #[inline(always)]
-fn texel<T: Tint>(tint: T, rows: T::Rows, offsets: [u16; LANES], (texels, last): (Texels<'_>, usize), k: usize) -> u8 {
-    tint.show(rows, k, texels.bytes[usize::from(offsets[k]) & last])
+fn shown<S: Lanes8, T: Tint>(
+    s: S,
+    (tint, rows): (T, T::Rows<S>),
+    texels: Texels<'_>,
+    offsets: S::I32,
+    pixels: &[u8; LANES],
+) -> [u8; LANES] {
+    tint.show(s, rows, s.bytes_at(texels.bytes, offsets), pixels)
 }
 
-/// Four of eight texels, from the first or from the fifth on, as they are shown.
+/// The first four bytes, and the others.
 #[inline(always)]
-fn four_texels<T: Tint>(
-    tint: T,
-    rows: T::Rows,
-    offsets: [u16; LANES],
-    image: (Texels<'_>, usize),
-    first: usize,
-) -> u32 {
-    u32::from_le_bytes([
-        texel(tint, rows, offsets, image, first),
-        texel(tint, rows, offsets, image, first + 1),
-        texel(tint, rows, offsets, image, first + 2),
-        texel(tint, rows, offsets, image, first + 3),
-    ])
+fn fours([a, b, c, d, e, f, g, h]: [u8; LANES]) -> [u32; 2] {
+    [u32::from_le_bytes([a, b, c, d]), u32::from_le_bytes([e, f, g, h])]
 }
 
 /// The number of pixels that are written at once if no more are left.
@@ -197,8 +184,8 @@ pub(crate) type LevelTexels<'a> = (Texels<'a>, u32);
 #[derive(Clone, Copy)]
 pub(crate) struct OffsetLanes<S: Lanes8> {
     pub(crate) s: S,
+    /// The bits of u that are those of a column.
     columns: S::I32,
-    rows: S::I32,
     width: S::I32,
     /// Fraction bits of coordinates: 16, and one for each level.
     bits: i32,
@@ -208,13 +195,11 @@ impl<S: Lanes8> OffsetLanes<S> {
     /// Offsets in a level of an image, of coordinates in level 0.
     #[inline(always)]
     pub(crate) fn of_level(s: S, (texels, level): LevelTexels<'_>) -> Self {
-        let columns = (1 << texels.ubits) - 1;
-        let rows = ((1 << texels.vbits) - 1) << texels.ubits;
-        let bits = 16 + level.cast_signed();
-        Self { s, columns: s.splat_i32(columns), rows: s.splat_i32(rows), width: s.splat_i32(columns + 1), bits }
+        let (width, bits) = (1 << texels.ubits, 16 + level.cast_signed());
+        Self { s, columns: s.splat_i32((width - 1) << bits), width: s.splat_i32(width), bits }
     }
 
-    /// Computes [`Texels::offset`] for these coordinates.
+    /// Computes [`Texels::offset`] for these coordinates, with other bits above those of the last offset.
     #[inline(always)]
     pub(super) fn at_coordinates(self, u: S::I32, v: S::I32) -> S::I32 {
         self.at(u, self.s.mul_i32(v, self.width))
@@ -226,11 +211,11 @@ impl<S: Lanes8> OffsetLanes<S> {
         self.s.splat_i32((1 << self.bits) - 1)
     }
 
-    /// Computes [`Texels::offset`] for u, and for v times the width, whose lost bits the masks would clear anyway.
+    /// Computes [`at_coordinates`](Self::at_coordinates) for u, and for v times the width.
     #[inline(always)]
     fn at(self, u: S::I32, v: S::I32) -> S::I32 {
         let s = self.s;
-        s.or_i32(s.and_i32(s.shr_i32(v, self.bits), self.rows), s.and_i32(s.shr_i32(u, self.bits), self.columns))
+        s.shr_i32(s.xor_i32(v, s.and_i32(s.xor_i32(u, v), self.columns)), self.bits)
     }
 }
 

@@ -1,6 +1,6 @@
 //! How a texel is shown: as it is, lit, fogged or blended.
 
-use crate::lanes::{LANES, NUMBERS};
+use crate::lanes::{LANES, NUMBERS, each};
 use crate::simd::Lanes8;
 
 /// Values of a span that are linear along it: the first, with the step in the upper half.
@@ -23,14 +23,12 @@ pub(crate) trait Tint: Copy {
     /// The state that changes along a span.
     type Along<S: Lanes8>: Copy;
     /// Table rows of eight pixels.
-    type Rows: Copy;
+    type Rows<S: Lanes8>: Copy;
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Self::Along<S>;
-    /// The table rows of the next eight pixels, whose current bytes are `pixels`; advances the
-    /// state.
-    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut Self::Along<S>, pixels: &[u8; LANES])
-    -> Self::Rows;
-    /// The byte for a texel of pixel `k` of eight.
-    fn show(self, rows: Self::Rows, k: usize, texel: u8) -> u8;
+    /// The table rows of the next eight pixels; advances the state.
+    fn rows<S: Lanes8>(self, s: S, along: &mut Self::Along<S>) -> Self::Rows<S>;
+    /// The bytes for eight texels, in pixels whose current bytes are these.
+    fn show<S: Lanes8>(self, s: S, rows: Self::Rows<S>, texels: [u8; LANES], pixels: &[u8; LANES]) -> [u8; LANES];
 }
 
 /// A linear value of eight pixels in 8.8, and the step to the next eight.
@@ -71,31 +69,25 @@ impl<S: Lanes8> Ramps<S> for PairValues {
     }
 }
 
-/// The lower half of each lane, in the way that suits a full block of a long row if `IN_BULK`, otherwise a short one.
+/// Eight values; advances to the next eight.
 #[inline(always)]
-pub(super) fn words<S: Lanes8, const IN_BULK: bool>(s: S, from: S::I32) -> [u16; LANES] {
-    if const { IN_BULK } { s.low_words_in_bulk(from) } else { s.low_words(from) }
-}
-
-/// The integer parts of eight values, in the upper bytes: rows of a table. Advances to the next eight.
-#[inline(always)]
-fn rows_of<S: Lanes8, const IN_BULK: bool>(s: S, [values, next]: &mut Ramp8<S>) -> [u16; LANES] {
-    let rows = words::<S, IN_BULK>(s, s.and_i32(*values, s.splat_i32(0xFF00)));
-    *values = s.add_i32(*values, *next);
-    rows
+fn next<S: Lanes8>(s: S, [values, next]: &mut Ramp8<S>) -> S::I32 {
+    let eight = *values;
+    *values = s.add_i32(eight, *next);
+    eight
 }
 
 /// Texels as they are.
 impl Tint for () {
     type Along<S: Lanes8> = ();
-    type Rows = ();
+    type Rows<S: Lanes8> = ();
     #[inline(always)]
     fn begin<S: Lanes8>(self, _: S, _: impl Ramps<S>) {}
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(self, _: S, (): &mut (), _: &[u8; LANES]) {}
+    fn rows<S: Lanes8>(self, _: S, (): &mut ()) {}
     #[inline(always)]
-    fn show(self, (): (), _: usize, texel: u8) -> u8 {
-        texel
+    fn show<S: Lanes8>(self, _: S, (): (), texels: [u8; LANES], _: &[u8; LANES]) -> [u8; LANES] {
+        texels
     }
 }
 
@@ -109,7 +101,7 @@ pub(crate) struct Painted<'a> {
 
 impl Tint for Painted<'_> {
     type Along<S: Lanes8> = Ramp8<S>;
-    type Rows = [u16; LANES];
+    type Rows<S: Lanes8> = S::I32;
     #[inline(always)]
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Ramp8<S> {
         let flat = self.flat;
@@ -120,12 +112,12 @@ impl Tint for Painted<'_> {
         )
     }
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut Ramp8<S>, _: &[u8; LANES]) -> [u16; LANES] {
-        rows_of::<S, IN_BULK>(s, along)
+    fn rows<S: Lanes8>(self, s: S, along: &mut Ramp8<S>) -> S::I32 {
+        next(s, along)
     }
     #[inline(always)]
-    fn show(self, rows: [u16; LANES], k: usize, texel: u8) -> u8 {
-        self.table[usize::from(rows[k] | u16::from(texel))]
+    fn show<S: Lanes8>(self, s: S, rows: S::I32, texels: [u8; LANES], _: &[u8; LANES]) -> [u8; LANES] {
+        s.look_up(self.table, rows, texels)
     }
 }
 
@@ -137,7 +129,7 @@ impl Tint for FoggedShades<'_> {
     const HAS_FOG: bool = true;
     type Along<S: Lanes8> = [Ramp8<S>; 2];
     /// Indices of the table.
-    type Rows = [u16; LANES];
+    type Rows<S: Lanes8> = S::I32;
     #[inline(always)]
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> [Ramp8<S>; 2] {
         [
@@ -154,20 +146,13 @@ impl Tint for FoggedShades<'_> {
         ]
     }
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(
-        self,
-        s: S,
-        [[fog, next_fog], [shades, next_shades]]: &mut [Ramp8<S>; 2],
-        _: &[u8; LANES],
-    ) -> [u16; LANES] {
-        let low = s.and_i32(s.shr_i32(*shades, 8), s.splat_i32(0xFF));
-        let indices = s.or_i32(s.and_i32(*fog, s.splat_i32(0xFF00)), low);
-        (*fog, *shades) = (s.add_i32(*fog, *next_fog), s.add_i32(*shades, *next_shades));
-        words::<S, IN_BULK>(s, indices)
+    fn rows<S: Lanes8>(self, s: S, [fog, shades]: &mut [Ramp8<S>; 2]) -> S::I32 {
+        let low = s.and_i32(s.shr_i32(next(s, shades), 8), s.splat_i32(0xFF));
+        s.or_i32(s.and_i32(next(s, fog), s.splat_i32(0xFF00)), low)
     }
     #[inline(always)]
-    fn show(self, indices: [u16; LANES], k: usize, _: u8) -> u8 {
-        self.0[usize::from(indices[k])]
+    fn show<S: Lanes8>(self, s: S, indices: S::I32, _: [u8; LANES], _: &[u8; LANES]) -> [u8; LANES] {
+        s.bytes_at(self.0, indices)
     }
 }
 
@@ -179,18 +164,19 @@ impl<T: Tint> Tint for Blended<'_, T> {
     const HAS_FOG: bool = T::HAS_FOG;
     const READS_PIXELS: bool = true;
     type Along<S: Lanes8> = T::Along<S>;
-    type Rows = (T::Rows, [u8; LANES]);
+    type Rows<S: Lanes8> = T::Rows<S>;
     #[inline(always)]
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> T::Along<S> {
         self.0.begin(s, of)
     }
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(self, s: S, along: &mut T::Along<S>, pixels: &[u8; LANES]) -> Self::Rows {
-        (self.0.rows::<S, IN_BULK>(s, along, pixels), *pixels)
+    fn rows<S: Lanes8>(self, s: S, along: &mut T::Along<S>) -> T::Rows<S> {
+        self.0.rows(s, along)
     }
     #[inline(always)]
-    fn show(self, (rows, pixels): Self::Rows, k: usize, texel: u8) -> u8 {
-        self.1[usize::from(self.0.show(rows, k, texel)) << 8 | usize::from(pixels[k])]
+    fn show<S: Lanes8>(self, s: S, rows: T::Rows<S>, texels: [u8; LANES], pixels: &[u8; LANES]) -> [u8; LANES] {
+        let own = self.0.show(s, rows, texels, pixels);
+        each!(k => self.1[usize::from(own[k]) << 8 | usize::from(pixels[k])])
     }
 }
 
@@ -201,7 +187,7 @@ pub(crate) struct Fogged<'a, T>(pub(crate) T, pub(crate) &'a [u8; 65_536]);
 impl<T: Tint> Tint for Fogged<'_, T> {
     const HAS_FOG: bool = true;
     type Along<S: Lanes8> = (T::Along<S>, Ramp8<S>);
-    type Rows = (T::Rows, [u16; LANES]);
+    type Rows<S: Lanes8> = (T::Rows<S>, S::I32);
     #[inline(always)]
     fn begin<S: Lanes8>(self, s: S, of: impl Ramps<S>) -> Self::Along<S> {
         let fog = of.ramp(
@@ -212,16 +198,17 @@ impl<T: Tint> Tint for Fogged<'_, T> {
         (self.0.begin(s, of), fog)
     }
     #[inline(always)]
-    fn rows<S: Lanes8, const IN_BULK: bool>(
-        self,
-        s: S,
-        (along, fog): &mut Self::Along<S>,
-        pixels: &[u8; LANES],
-    ) -> Self::Rows {
-        (self.0.rows::<S, IN_BULK>(s, along, pixels), rows_of::<S, IN_BULK>(s, fog))
+    fn rows<S: Lanes8>(self, s: S, (along, fog): &mut Self::Along<S>) -> Self::Rows<S> {
+        (self.0.rows(s, along), next(s, fog))
     }
     #[inline(always)]
-    fn show(self, (rows, levels): Self::Rows, k: usize, texel: u8) -> u8 {
-        self.1[usize::from(levels[k] | u16::from(self.0.show(rows, k, texel)))]
+    fn show<S: Lanes8>(
+        self,
+        s: S,
+        (rows, levels): Self::Rows<S>,
+        texels: [u8; LANES],
+        pixels: &[u8; LANES],
+    ) -> [u8; LANES] {
+        s.look_up(self.1, levels, self.0.show(s, rows, texels, pixels))
     }
 }
