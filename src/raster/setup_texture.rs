@@ -505,14 +505,13 @@ impl PerspectivePlanes8 {
 
     /// The sums rounded to f32, if quotients may be taken in f32: see [`singles_margin`].
     #[inline(always)]
-    pub(super) fn singles(&self, lane: usize, sums: impl FnOnce() -> [f64; 3]) -> Option<PerspectiveSums<f32>> {
+    pub(super) fn singles(&self, lane: usize, sums: impl FnOnce() -> [f32; 3]) -> Option<PerspectiveSums<f32>> {
         let lane = lane % LANES;
         let margin = self.margin[lane];
         if margin == 0 {
             return None;
         }
-        // Rounds.
-        let ([u, v, d], [du, dv, dd]) = (sums().map(|sum| sum as f32), &self.single_step);
+        let ([u, v, d], [du, dv, dd]) = (sums(), &self.single_step);
         Some(PerspectiveSums {
             numerators: [[u, du[lane]], [v, dv[lane]]],
             divisors: [d, dd[lane]],

@@ -12,7 +12,7 @@ use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
 use crate::fixed::{ROUND_MAGIC, U8F8};
-use crate::lanes::{self, LANES, three};
+use crate::lanes::{self, LANES, each, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, PickedTriangles, Value};
 use crate::raster::interpolation::Interpolation;
@@ -167,6 +167,8 @@ pub(super) struct SpanData {
     pub(super) numbers: RecordColumns<i32, NUMBERS>,
     pub(super) coordinates: RecordColumns<i32, COORDINATES>,
     sums: RecordColumns<i64, SUMS>,
+    /// The sums rounded to f32; not of a face that is walked.
+    single_sums: RecordColumns<f32, SUMS>,
     planes: [FacePlanes8; Batches::COUNT],
 }
 
@@ -240,8 +242,9 @@ pub(super) struct ListedFaces<'a> {
 
 impl SpanData {
     pub(super) fn new() -> Self {
-        let (numbers, coordinates, sums) = (RecordColumns::new(), RecordColumns::new(), RecordColumns::new());
-        Self { numbers, coordinates, sums, planes: <[FacePlanes8; Batches::COUNT]>::default() }
+        let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
+        let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
+        Self { numbers, coordinates, sums, single_sums, planes: <[FacePlanes8; Batches::COUNT]>::default() }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
@@ -249,6 +252,12 @@ impl SpanData {
     pub(super) fn sums(&self, record: usize) -> [f64; SUMS] {
         let of = |i: usize| f64::from_bits(self.sums.of(record, i).cast_unsigned());
         [of(0), of(1), of(2)]
+    }
+
+    /// The [`sums`](Self::sums) rounded to f32, of a face that is not walked.
+    #[inline(always)]
+    pub(super) fn single_sums(&self, record: usize) -> [f32; SUMS] {
+        [0, 1, 2].map(|i| self.single_sums.of(record, i))
     }
 
     /// The planes of a face's batch, and the face's lane.
@@ -471,7 +480,7 @@ impl Shades8 for EffectSpans<'_> {
         parts: &Parts<S>,
     ) -> S::I32 {
         let ListedFaces { wanted, data, batches, .. } = &mut self.listed;
-        let SpanData { numbers, coordinates, sums, planes } = &mut **data;
+        let SpanData { numbers, coordinates, sums, single_sums, planes } = &mut **data;
         let (planes, record) = (&planes[batches.current()], batches.records.begin());
         let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
         let Wanted { shade, values, slots, reseeds, texture, .. } = *wanted;
@@ -508,6 +517,9 @@ impl Shades8 for EffectSpans<'_> {
             Some(_) => {
                 for (i, sum) in planes.perspective.starts(s, lane, j, parts.seed).into_iter().enumerate() {
                     s.store_i64(s.bits(sum), sums.eight(record, i));
+                    let mut doubles = [0.0; LANES];
+                    s.store_f64(sum, &mut doubles);
+                    *single_sums.eight(record, i) = each!(lane => doubles[lane] as f32);
                 }
             }
             None => {}

@@ -291,7 +291,7 @@ impl<'a> Spans<'a> {
     #[inline(always)]
     pub(super) fn singles(&self, i: usize) -> Option<PerspectiveSums<f32>> {
         let (planes, lane) = self.data.planes(self.face(i));
-        planes.perspective.singles(lane, || self.data.sums(self.record(i)))
+        planes.perspective.singles(lane, || self.data.single_sums(self.record(i)))
     }
 
     /// Runs one stage: for every face, `plane` sets up its values from its corners, top to bottom;
