@@ -84,7 +84,7 @@ pub enum Blend {
     Add,
 }
 
-/// A matt white material in the palette's first ramp: it reflects 15 % of ambient light and 85 % of a light's.
+/// A matt white material in the palette's first ramp: it reflects 15 % of ambient and 85 % of other light.
 impl Default for Material {
     fn default() -> Self {
         Self::from_surface(&Surface::default(), 0)

@@ -14,8 +14,8 @@
 //! Each stage is one function over `simd::Lanes8`, compiled for each level of the processor; only the last, the span
 //! kernel, is written separately for each level.
 //!
-//! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are those of
-//! calling it for each triangle in turn.
+//! A triangle larger than 2¹⁸ pixels is drawn by [`Raster::triangle`] when its turn comes. The bytes are the same as if
+//! it drew each triangle in turn.
 
 use super::columns::{PickedTriangles, Triangles};
 use super::depth::{Cell, DepthBuffer};
@@ -50,8 +50,8 @@ impl Default for SpanScratch {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are those of
-    /// calling [`triangle`](Self::triangle) for each. Shadings other than linear ones in 8.8 use the memory given, or
+    /// Draws triangles that were picked inside the clip rectangle, in order: bytes, depths and counts are as if
+    /// [`triangle`](Self::triangle) had drawn each. Shadings other than linear ones in 8.8 use the memory given, or
     /// clear their own.
     pub(crate) fn picks(
         &mut self,

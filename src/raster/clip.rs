@@ -1,4 +1,4 @@
-//! Clipping of triangles to convex polygons, and the triangles these are drawn as.
+//! Clips triangles to convex polygons, and splits these into triangles to draw.
 //!
 //! Both vertex paths clip with [`clip`]. The planes come in a fixed order, and each new point is computed from the
 //! inside end of its edge toward the outside end. Two triangles that share an edge traverse it in opposite directions,

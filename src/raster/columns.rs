@@ -235,7 +235,7 @@ impl<'a> Picks<'a> {
     }
 }
 
-/// Triangles, and those of them that are drawn.
+/// Triangles, and which of them are drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PickedTriangles<'a> {
     pub(crate) triangles: &'a Triangles<'a>,

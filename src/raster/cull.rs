@@ -198,8 +198,7 @@ impl CullMasks {
 pub(crate) type PickList<const N: usize> = Packed<N>;
 
 compiled_for_each_level! {
-    /// Appends to the list those of the 64 triangles from index `first` on whose bits are set in
-    /// `chosen`.
+    /// Appends to the list the triangles whose bits are set in `chosen`, of the 64 from index `first` on.
     // Never inlined: `.ci/off_is_free` compares two builds, and only one of them inlined it.
     #[inline(never)]
     pub(crate) fn pick[const N: usize][N](list: &mut PickList<N>, first: u32, masks: &CullMasks, chosen: u64) = pick_by;

@@ -7,8 +7,8 @@ use super::frame::Rect;
 pub use crate::span::depth::Cell;
 use crate::span::depth::Cells;
 
-/// A depth buffer over the rows of a frame: one u32 per pixel, or one u16 on small machines, which cannot distinguish
-/// depths that differ by less than 2¹⁴ of 2³⁰. Greater is nearer, 0 is farthest. The caller owns the slice.
+/// A depth buffer over the rows of a frame: one u32 per pixel, or on small machines one u16, which cannot distinguish
+/// depths less than 2¹⁴ of 2³⁰ apart. Greater is nearer, 0 is farthest. The caller owns the slice.
 #[derive(Debug)]
 pub struct DepthBuffer<'a, D: Cell = u32> {
     values: &'a mut [D],

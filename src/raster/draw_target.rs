@@ -13,8 +13,8 @@ use super::frame::Frame;
 
 /// A palette index as a colour of `embedded-graphics`.
 ///
-/// [`Frame::clear`] takes the byte itself, `frame.clear(3)`, and hides the method of [`DrawTarget`]; where a colour is at
-/// hand, write `DrawTarget::clear(&mut frame, color)`.
+/// [`Frame::clear`] takes the byte itself, `frame.clear(3)`, and hides the method of [`DrawTarget`]; to pass a colour,
+/// write `DrawTarget::clear(&mut frame, color)`.
 ///
 /// ```
 /// use mode13h::embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};

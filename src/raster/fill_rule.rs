@@ -24,7 +24,7 @@ pub(super) fn first_centre_of_each<S: Lanes8>(s: S, units: S::I32) -> S::I32 {
 /// E(p) = (b − a) × (p − a)        of each edge; positive inside, or if counter-clockwise, negative
 /// ```
 ///
-/// A point on an edge lies inside if the edge is a left or a top one; otherwise E minus 1 makes it negative.
+/// A point on a left or top edge lies inside; on any other edge, subtracting 1 makes E negative.
 #[inline(always)]
 pub(super) fn cover_none_of_four<S: Lanes8>(
     s: S,

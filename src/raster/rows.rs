@@ -180,7 +180,7 @@ pub(super) trait Shades8 {
         if let Some(batches) = self.batches() { batches.are_full() } else { false }
     }
 
-    /// Returns whether there is room for the fills of this many rows of eight.
+    /// Returns whether there is room for the fills of `rows` times eight rows.
     #[inline(always)]
     fn has_room(&mut self, rows: usize) -> bool {
         if let Some(batches) = self.batches() { batches.records.have_room(rows) } else { true }
@@ -406,9 +406,9 @@ impl<S: Lanes8> RowCursor8<S> {
     }
 }
 
-/// Returns whether the parts of the loop over triangles are calls: for records in narrow vectors, which would otherwise
-/// be spilled, and in plain arrays. Those are in memory anyway, so calls cost about 1 % of a frame, while inlining makes
-/// a build take half as long again or more. Vectors are aligned to their size.
+/// Returns whether parts of the loop over triangles are called, not inlined: for records in narrow vectors, which would
+/// otherwise be spilled, and in plain arrays. Arrays are in memory anyway, so calls cost about 1 % of a frame, while
+/// inlining lengthens a build by half or more. Vectors are aligned to their size.
 #[inline(always)]
 const fn is_apart<S: Lanes8, P: Shades8>() -> bool {
     align_of::<S::F64>() < if P::IS_LINEAR { 16 } else { 32 }

@@ -243,8 +243,8 @@ impl TriangleSetup8 {
         self.z_per_row[i] = plane.fixed_at(column, row + 1).wrapping_sub(z) << 8;
     }
 
-    /// Sets up eight triangles, no box of which has more than 2¹⁸ pixels; if asked for, the depth planes of small ones
-    /// too, and the planes of linear shades. Returns the basis for setting up other planes.
+    /// Sets up eight triangles whose boxes have at most 2¹⁸ pixels; on request also the depth planes of small ones, and
+    /// the planes of linear shades. Returns the basis for setting up other planes.
     #[inline(always)]
     pub(super) fn set_up<S: Lanes8>(
         &mut self,
@@ -375,10 +375,9 @@ impl<S: Lanes8> Basis<S> {
     /// | with rows added | 7 | 65 |
     /// | with columns added up to a span's start, and from there to a pixel: no more than the box has | 9 | 101 |
     ///
-    /// A quotient of two such sums, the divisor of depths of which the greatest is V and the least v, is at most Q. The
-    /// numerator's B is at most Q times the divisor's, and the divisor at a pixel at least the area A times v. So with
-    /// X = W·H·V / (A·v) the quotient is off by 202·ε·Q·X for each unit of Q's. Returns numerator and denominator of X,
-    /// given the depths.
+    /// Let Q bound a quotient of two such sums, where the divisor sums depths from v to V. The numerator's B is then at
+    /// most Q times the divisor's, and the divisor at a pixel at least the area A times v. So with X = W·H·V / (A·v)
+    /// the quotient is off by 202·ε·Q·X for each unit of Q's. Returns numerator and denominator of X, given the depths.
     #[inline(always)]
     pub(super) fn conditions(&self, s: S, [least, greatest]: [S::F64; 2]) -> [S::F64; 2] {
         let [width, height] = self.sides(s);

@@ -7,8 +7,8 @@
 //! remainder below the area of at most 2³⁴: with columns below 2¹⁰ and rows below 2¹², sums of remainders stay below
 //! 2⁴⁷, quotients below 2¹³, so they are off by less than 2⁻³⁷, with a margin of 2⁻³⁵.
 //!
-//! Coordinates that are linear on the face are quotients of two values with a plane each in f64; their accuracy is that
-//! of [`Basis::conditions`]. With Q the greatest coordinate and Q·X up to 2⁴³ they are off by less than 0.2; other
+//! Coordinates that are linear on the face are quotients of two values, each with a plane in f64; [`Basis::conditions`]
+//! gives their accuracy. With Q the greatest coordinate and Q·X up to 2⁴³ they are off by less than 0.2; other
 //! triangles get a divisor below 0, which decides nothing. A triangle's coordinates are relative to the texel of a
 //! corner, its base, so that f32 resolves them if the other corners are near.
 
@@ -181,8 +181,7 @@ impl AffinePlanes8 {
             let [first, per_column, per_row] = plane.parts(pixel);
             (self.first[i][lane], self.whole_per_row[i][lane]) = (first.0, per_row.0);
             self.whole_per_column[i][lane] = per_column.0;
-            // All below 2⁵³. The quotient's floor is the nearest integer of one that is less by ½ and 1 / (2·area)
-            // more.
+            // All below 2⁵³. The quotient's floor is the integer nearest to the quotient − ½ + 1 / (2·area).
             self.n[i][lane] = first.1 as f64 - (area.get() as f64 * 0.5 - 0.5);
             (self.per_row[i][lane], self.per_column[i][lane]) = (per_row.1 as f64, per_column.1 as f64);
             // Modulo 2³².
@@ -231,8 +230,8 @@ fn doubled<S: Lanes8>(s: S, u: S::F64, v: S::F64) -> S::F64 {
     s.add(s.add(u, v), s.max(u, v))
 }
 
-/// The least n, from 0 on, for which a length, at least 0, is at most 2ⁿ units. The bits of f64 from 0 on, as integers,
-/// are in the order of the numbers, and those of 2ⁿ units are n · 2⁵² more than those of one; so no division is needed.
+/// The least n, from 0 on, for which a length, at least 0, is at most 2ⁿ units. From 0 on, f64 are in the order of
+/// their bits read as integers, and the bits of 2ⁿ units are n · 2⁵² more than those of one; so no division is needed.
 #[inline(always)]
 fn level_of<S: Lanes8>(s: S, length: S::F64, unit: S::F64) -> S::I32 {
     let more = s.sub_i64(s.bits(length), s.bits(unit));
@@ -376,8 +375,8 @@ impl PerspectivePlanes8 {
         starts
     }
 
-    /// Finds where [`level`](Self::level) is accurate: given Q·W·H times the greatest depth, and A times the least,
-    /// whose quotient is Q·X; and W + H, and both depths.
+    /// Finds where [`level`](Self::level) is accurate, given Q·W·H times the greatest depth and A times the least
+    /// (their quotient is Q·X), W + H, and both depths.
     #[inline(always)]
     fn set_up_levels<S: Lanes8>(
         &mut self,
@@ -395,9 +394,9 @@ impl PerspectivePlanes8 {
     /// Finds the triangles all of whose pixels have the same level, from bounds of the quotient of
     /// [`level`](Self::level) over a whole triangle. Levels beyond the last count as the last.
     ///
-    /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This is
-    /// linear on the triangle, as is the same by rows, and D is. So each lies between the values at the corners, and G
-    /// / D² between the least G over the greatest D² and the greatest G over the least D².
+    /// At a corner D is A times its depth d, so ∂N/∂x · D − N · ∂D/∂x is A · (∂N/∂x · d − u · d · ∂D/∂x). This, its
+    /// counterpart by rows, and D are linear on the triangle. So each lies between its values at the corners, and G /
+    /// D² between the least G over the greatest D² and the greatest G over the least D².
     ///
     /// Depths differ by a factor of at most 2, so the greatest D² is at most 4 times any other: where the level is
     /// above 0, G, which is off by less than 1.2 · D², and the square of the depth are together off by less than 2⁻¹⁴

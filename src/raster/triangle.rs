@@ -73,7 +73,7 @@ impl<'a> Raster<'a> {
     }
 }
 
-/// The height of a triangle, in 256ths of a pixel, from which the eight-lane set-up pays for its rows: 32 pixels. (With
+/// The height of a triangle, in 256ths of a pixel, from which eight-lane set-up of its rows pays off: 32 pixels. (With
 /// AVX2, 19 rows take 200 ns row by row and 228 ns together, 100 rows 1,320 and 690 ns.)
 const TALL: i64 = 32 << 8;
 

@@ -200,9 +200,9 @@ fn drawn_by(interpolation: Interpolation) -> Interpolation {
 }
 
 impl<D: Cell> Raster<'_, D> {
-    /// Draws triangles in the order given: bytes, depths and counts are those of calling [`triangle`](Self::triangle)
-    /// for each. All but vintage ones are culled 128 at a time and set up eight at a time, which is several times as
-    /// fast for small ones.
+    /// Draws triangles in the order given: bytes, depths and counts are as if [`triangle`](Self::triangle) had drawn
+    /// each. All but vintage ones are culled 128 at a time and set up eight at a time, which is several times as fast
+    /// for small ones.
     ///
     /// ```
     /// use mode13h::fixed::{I24F8, U8F8};
@@ -272,8 +272,8 @@ impl<D: Cell> Raster<'_, D> {
         self.picks(PickedTriangles { triangles: &triangles, picks }, *drawn_by, spans, None)
     }
 
-    /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are those of
-    /// [`triangle`](Self::triangle) called for each. Shared vertices are not copied, so this is faster than
+    /// Draws triangles whose corners are indices into `vertices`, in order: bytes, depths and counts are as if
+    /// [`triangle`](Self::triangle) had drawn each. Shared vertices are not copied, so this is faster than
     /// [`triangles`](Self::triangles). A triangle with an index of `N` or more is left out.
     ///
     /// ```

@@ -87,9 +87,9 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
 
 /// The point where an edge meets a plane.
 ///
-/// It is the mean of the two ends, each weighted with the other's distance: for numbers of one sign, as w is, no digit
-/// is lost however far apart they are. The coordinate that the plane fixes is not interpolated at all: with ends 10³⁸
-/// away on opposite sides, nothing of it would be left, and the next plane would drop the point, and the face with it.
+/// It is the mean of the two ends, each weighted with the other's distance: numbers of one sign, like w, lose no digit,
+/// however far apart they are. The coordinate that the plane fixes is not interpolated at all: with ends 10³⁸ away on
+/// opposite sides, none of it would be left, and the next plane would drop the point, and the face with it.
 fn cut(
     view: &ObjectView,
     progressions: Progressions,

@@ -73,7 +73,7 @@ impl DeferredFace {
         Picks { picks: slice::from_ref(&self.pick), flat: self.flat.as_slice() }
     }
 
-    /// The triangles that this face is one of.
+    /// The triangles this face belongs to.
     fn triangles<'a>(&self, scene: &'a Scene, cache: &'a Cache, added: Triangles<'a>) -> Triangles<'a> {
         let object = self.object as usize;
         if self.look.added { added } else { cache.states[object].triangles(&scene.objects()[object]) }

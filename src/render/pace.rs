@@ -5,11 +5,10 @@
 //! at one error takes longer at all of them. Each error first gets a block of its own, starting
 //! with the greatest. From then on each block is drawn within the least error whose time fits.
 //!
-//! A frame that takes twice the block's median or longer counts as the median, since another
-//! program must have run. A block whose time is used up ends at once, so a sudden load is handled
-//! within a few frames. An error that fits is kept as long as it takes no more than a twentieth
-//! longer, and a smaller one is chosen only after 32 frames without a change, so that no two errors
-//! alternate.
+//! A frame that takes twice the block's median or longer counts as the median, since another program must have run. A
+//! block whose time is used up ends at once, so a sudden load is handled within a few frames. An error that fits is
+//! kept until its frames exceed the time by a twentieth, and a smaller one is chosen only after 32 frames without a
+//! change, so that no two errors alternate.
 
 use core::time::Duration;
 

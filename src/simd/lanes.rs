@@ -212,7 +212,7 @@ pub(crate) trait Lanes8: Copy {
     fn to_bitmask(self, mask: Self::Mask) -> u32;
     /// The mask with these bits.
     fn mask_from_bits(self, bits: u8) -> Self::Mask;
-    /// Packs the lanes whose mask is set to the front, in order; what follows them is arbitrary.
+    /// Packs the lanes set in the mask at the front, in order; the rest is arbitrary.
     #[inline(always)]
     fn compress_i32<const N: usize>(self, mask: Self::Mask, from: [Self::I32; N], to: [&mut [u32; 8]; N]) {
         let mut lanes = [[0; 8]; N];
@@ -244,7 +244,7 @@ pub(crate) trait Lanes8: Copy {
     fn test_eight(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         test_depths(cells, depths, count, keeps)
     }
-    /// Tests like [`test_four`](Self::test_four), for up to eight pixels: no more of them than necessary.
+    /// Tests like [`test_four`](Self::test_four), for four pixels if that is enough, otherwise eight.
     #[inline(always)]
     fn test_block(self, cells: &mut [u32; 8], depths: [i64; 2], count: usize, keeps: bool) -> u64 {
         match cells.first_chunk_mut() {

@@ -24,7 +24,7 @@ impl<const N: usize> Packed<N> {
         Self { numbers: [0; N], count: 0 }
     }
 
-    /// Appends those of eight numbers whose mask is set. Numbers that do not fit are dropped.
+    /// Appends the lanes that the mask selects. Numbers that do not fit are dropped.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8>(&mut self, s: S, mask: S::Mask, numbers: S::I32) {
         let count = self.count.min(Self::CAPACITY);

@@ -123,8 +123,8 @@ macro_rules! singles_of_256_bits {
             fn splat_f32(value: f32) -> __m256 { _mm256_set1_ps(value) }
             fn vectors(from: &[Vec3; 8]) -> [__m256; 3] {
                 const { assert!(size_of::<Vec3>() == 12) };
-                // 24 f32: a `Vec3` is three of them in this order, without padding. Four each are loaded from indices
-                // 0, 4, 8, 12, 16 and 20 on.
+                // 24 f32: a `Vec3` is three of them in this order, without padding. Each load takes four, from index 0,
+                // 4, 8, 12, 16 or 20 on.
                 let from: *const f32 = from.as_ptr().cast();
                 let a = _mm256_set_m128(_mm_loadu_ps(from.add(12)), _mm_loadu_ps(from));
                 let b = _mm256_set_m128(_mm_loadu_ps(from.add(16)), _mm_loadu_ps(from.add(4)));

@@ -4,8 +4,8 @@
 //! row[k] = (((shade + k·step) mod 2³²) >> 16) mod 256
 //! ```
 
-/// Fills `row` with a linear ramp. `shade` is the first pixel's shade, `step` what each pixel adds to it, both in
-/// 16.16; the sum wraps.
+/// Fills `row` with a linear ramp. `shade` is the first pixel's shade, `step` the change per pixel, both in 16.16; the
+/// sum wraps.
 ///
 /// The compiler vectorises it: 4.0 ns at 8 pixels, 9.8 at 64 and 34 at 320.
 ///

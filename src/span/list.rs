@@ -50,7 +50,7 @@ pub(crate) struct SpanList {
     pub(crate) pitch: i32,
     /// Cells from one row to the next.
     pub(crate) width: i32,
-    /// True if that is the same for both, so that pixels and their cells have the same offset.
+    /// True if `pitch` equals `width`, so that pixels and their cells have the same offset.
     cells_are_pixels: bool,
     /// True if there are cells.
     pub(crate) has_cells: bool,
@@ -172,7 +172,7 @@ impl SpanList {
         s.is_greater(sign, s.splat_i32(-1))
     }
 
-    /// Appends those of eight spans that have a length and lie inside, with depths if given their change per pixel. If
+    /// Appends whichever of eight spans have a length and lie inside, with depths if given their change per pixel. If
     /// there is no room for eight, some are dropped.
     #[inline(always)]
     pub(crate) fn append<S: Lanes8>(&mut self, s: S, spans: &Spans8<S>, dz: Option<DepthSteps<S>>) {

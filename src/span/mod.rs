@@ -193,7 +193,7 @@ impl Kernel {
 
     /// Writes `row[k] = ((shade + k·step) mod 65,536) >> 8` for every `k` below `row.len()`.
     ///
-    /// `shade` is the first pixel's shade, `step` what each pixel adds to it, both in 8.8.
+    /// `shade` is the first pixel's shade, `step` the change per pixel, both in 8.8.
     #[inline]
     pub fn fill(self, row: &mut [u8], shade: u16, step: u16) {
         match self.level {
@@ -304,7 +304,7 @@ impl Kernel {
             let mask = !(u64::MAX << 1 << (8 * length - 1));
             *row = (u64::from_le_bytes(*bytes) & mask | u64::from_le_bytes(*row) & !mask).to_le_bytes();
         } else if let (Some(row), Some(bytes)) = (row.get_mut(..length), bytes.get(..length)) {
-            // Calling the C library's copy takes as long as some tens of pixels.
+            // Calling the C library's copy takes as long as dozens of pixels.
             let blocks = bytes.as_chunks::<8>().0;
             for (to, from) in row.as_chunks_mut::<8>().0.iter_mut().zip(blocks) {
                 *to = *from;

@@ -21,7 +21,7 @@ impl Records {
     const CAPACITY: usize = 256;
     pub(crate) const NONE: Self = Self { count: 0 };
 
-    /// Returns whether there is room for this many rows of eight.
+    /// Returns whether there is room for `rows` times eight rows.
     #[inline(always)]
     pub(crate) fn have_room(&self, rows: usize) -> bool {
         self.count + rows * LANES <= Self::CAPACITY

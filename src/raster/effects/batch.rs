@@ -32,7 +32,7 @@ pub struct EffectBatch {
     scratch: EffectScratch,
 }
 
-/// The corners of faces in columns, of which only the values that a pipeline uses are set. Arrays, so that the compiler
+/// Columns of the corners of faces; only the values that a pipeline uses are set. They are arrays, so the compiler
 /// knows their lengths.
 #[derive(Clone, Debug)]
 struct CornerColumns {

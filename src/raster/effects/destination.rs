@@ -34,7 +34,7 @@ pub(super) trait Destination {
         Some(DrawnPixels { is_tested: true, ..self.untested(spans, i) })
     }
 
-    /// Writes texels to these pixels of span `i`; `before` of its drawn pixels come earlier.
+    /// Writes texels to these pixels of span `i`, after its first `before` drawn pixels.
     #[inline(always)]
     fn show<S: Lanes8, T: Tint>(
         &mut self,
@@ -65,7 +65,7 @@ pub(super) struct DrawnPixels {
 }
 
 impl DrawnPixels {
-    /// Some of these pixels, `before` of which come earlier.
+    /// The next `length` pixels after the first `before`.
     #[inline(always)]
     pub(super) fn part(self, before: usize, length: usize) -> Self {
         let mut part = Self { at: self.at + before, length, ..self };

@@ -11,8 +11,7 @@ use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::{self, Numerators};
 use crate::span::{Kernel, PIECE};
 
-/// The most lit pixels of a span of which only some are lit, its end included, rounded up to whole
-/// vectors.
+/// The most lit pixels in a partly lit span, its end included, rounded up to whole vectors.
 const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.

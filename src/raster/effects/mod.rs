@@ -34,7 +34,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The stages, each of which may be left out:
+//! The stages, any of which may be left out:
 //!
 //! ```text
 //! shades     from the shading, from a table of normals, or lit at every pixel

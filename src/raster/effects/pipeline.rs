@@ -28,7 +28,7 @@ pub enum ShadeSource<'a> {
     /// [`GouraudVintage`](Interpolation::GouraudVintage) contributes only the shades; coverage stays exact, because the
     /// values of all stages are in range only inside the triangle.
     Shaded(Interpolation),
-    /// [`Attributes::slope`](super::Attributes::slope), linear on the screen, looked up: row and column give the shade.
+    /// [`Attributes::slope`](super::Attributes::slope), linear on the screen: row and column of the shade in the table.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at every pixel.
     Lit(&'a dyn PixelLighting),
@@ -161,7 +161,7 @@ const _: () = assert!((Texels::MAX_BITS as usize) < LEVELS);
 pub struct PixelPipeline<'a> {
     /// The source of the shades.
     pub source: ShadeSource<'a>,
-    /// Red, green and blue instead of one shade, and what they are mixed to.
+    /// Red, green and blue instead of one shade, and how they are mixed.
     pub channels: Option<Mix<'a>>,
     /// Dither: thresholds of a [`DitherPattern`](crate::settings::DitherPattern) in place of the half that is added to
     /// each shade.

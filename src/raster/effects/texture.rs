@@ -202,8 +202,8 @@ fn show_affine_levels_by<S: Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Draws the texels of span `i`. `line` returns their coordinates at its first pixel, and the change per pixel; it
-/// is called once pixels turn out to be drawn, so that numbers are broadcast from memory.
+/// Draws the texels of span `i`. `line` returns their coordinates at its first pixel and the change per pixel; it is
+/// called once pixels are known to be drawn, so that numbers are broadcast from memory.
 #[inline(always)]
 fn show_line<S: Lanes8, T: Tint, D: Destination>(
     (spans, i): (&Spans<'_>, usize),
@@ -355,7 +355,7 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
     }
 }
 
-/// Draws texels in a span, linear on the face, from its pixel `first` on; `before` of its drawn pixels come earlier.
+/// Draws texels in a span, linear on the face, from its pixel `first` on, which follows `before` drawn pixels.
 #[inline(always)]
 fn show_part<S: F32Lanes8, T: Tint, D: Destination>(
     (spans, i, before): (&Spans<'_>, usize, u32),

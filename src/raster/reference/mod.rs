@@ -1,6 +1,6 @@
 //! One triangle in integers: the definition of every byte and depth.
 //!
-//! `spans` draws eight triangles at a time, in floats that are proved and tested to
+//! `batches` draws eight triangles at a time, in floats that are proved and tested to
 //! round to these integers. This draws one, and is used where that is slower or impossible: by
 //! [`Raster::triangle`](super::Raster::triangle), for triangles beyond 2¹⁸ pixels, on processors
 //! without floating point, where an estimate cannot decide, and by tests.

@@ -86,7 +86,7 @@ impl ShadePlane {
         }
     }
 
-    /// BX: what the span loop adds from pixel to pixel, in 1/256 shade modulo 2¹⁶.
+    /// BX: the step that the span loop adds per pixel, in 1/256 shade modulo 2¹⁶.
     #[must_use]
     #[inline]
     pub fn step(&self) -> u16 {

@@ -70,8 +70,8 @@ impl AffinePlane {
         }
     }
 
-    /// The coordinate at a pixel, its change per column, and per row: each the floor, modulo 2³², and the
-    /// remainder. With the floor of the remainders' sum, these make [`start`](Self::start) at any pixel.
+    /// The coordinate at a pixel, and its change per column and per row: each a floor, modulo 2³², and a remainder.
+    /// Adding the floor of the remainders' sum gives [`start`](Self::start) at any pixel.
     pub(in crate::raster) fn parts(&self, [x, y]: [i32; 2]) -> [(i32, i64); 3] {
         let ([gx, gy], area) = (self.gradient.map(i128::from), i128::from(self.area.get()));
         let (dx, dy) =

@@ -11,9 +11,9 @@
 //! ```
 //!
 //! The image is the depth buffer's, byte for byte: coverage by the same edges, depth by the same
-//! [`DepthPlane`](super::reference::depth::DepthPlane), the first submitted of equal depths, and each shade from the
-//! start that the triangle alone would have. It does not need a depth for every pixel and paints no pixel that another
-//! face hides; a face that no other overlaps needs no depth at all.
+//! [`DepthPlane`](super::reference::depth::DepthPlane), the first face submitted at equal depths, and shades from the
+//! start that the triangle alone would have. The method needs no depth per pixel and paints no pixel that another face
+//! hides; a face that no other overlaps needs no depth at all.
 //!
 //! [`GouraudVintage`](Interpolation::GouraudVintage), whose triangles have edges of their own, gets exact coverage here
 //! like all others, with its own [shades](super::vintage). So it alone gives frames that differ from the depth
@@ -97,8 +97,8 @@ impl Key {
 
 impl<D: Cell> Raster<'_, D> {
     internal! {
-    /// Draws all `faces` of a frame, the nearest one at each pixel, and writes no pixel twice: the
-    /// bytes are those of drawing them in order with a cleared depth buffer.
+    /// Draws all `faces` of a frame, the nearest one at each pixel, and writes no pixel twice: the bytes are as if they
+    /// were drawn in order with a cleared depth buffer.
     ///
     /// The frame's former contents count as background. The raster's depth buffer, if it has one, is neither read nor
     /// changed.

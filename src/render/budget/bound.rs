@@ -33,7 +33,7 @@ pub(super) struct Shapes {
     /// Size of the parts into which the faces are divided, as a fraction of the face; `None` for whole faces, whose
     /// corners have unit normals.
     pub(super) part: Option<Lanes<f32>>,
-    /// Fraction of its range by which perspective shifts a shade.
+    /// How far perspective shifts a shade, relative to its range.
     pub(super) bend: Lanes<f32>,
 }
 

@@ -21,8 +21,8 @@ pub(in crate::render) struct Classes {
     pub(in crate::render) errors: [f32; CHUNK],
 }
 
-/// Fraction of its range by which perspective shifts a shade, (ρ − 1) / 4 (Lemma 9), on each of
-/// eight clusters. Nothing drawn unclipped is nearer than the near plane.
+/// How far perspective shifts a shade, relative to its range, (ρ − 1) / 4 (Lemma 9), on each of eight clusters. Nothing
+/// drawn unclipped is nearer than the near plane.
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
     let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
@@ -35,7 +35,7 @@ fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f3
     })
 }
 
-/// Fraction of its range by which perspective shifts a shade, on each of eight faces.
+/// How far perspective shifts a shade, relative to its range, on each of eight faces.
 #[inline(always)]
 fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
     let (row, offset) = view.along_view();

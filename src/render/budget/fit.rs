@@ -1,9 +1,9 @@
 //! Fits a quadratic function on the screen, tested on a grid of points of one face
 //! (`docs/budget.md`, Lemma 10).
 //!
-//! The quadratic function goes through the light at six points: the corners and the middles of the
-//! edges (see `raster::effects::ShadeSource::Curved`). It approximates light before it is clamped
-//! at 1: clamping both never increases their difference.
+//! The quadratic function goes through the light at six points: the corners and the middles of the edges (see
+//! `raster::effects::ShadeSource::Curved`). It approximates unclamped light: clamping both at 1 never increases their
+//! difference.
 //!
 //! On a matt face, light from one source continues below the horizon as negative light, whose
 //! magnitude is the light on the other side.

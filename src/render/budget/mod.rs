@@ -29,8 +29,7 @@ use crate::light::Lights;
 use crate::plan::FaceShading;
 use crate::settings::Shading;
 
-/// Shadings of faces that are linear on the screen, of those that are linear on the face, and of those lit at every
-/// pixel.
+/// Shadings of faces that are linear on the screen, linear on the face, or lit at every pixel.
 pub(super) const LINEAR: FaceShading = FaceShading::By(Shading::Gouraud88Reseeded);
 pub(super) const FLOAT: FaceShading = FaceShading::By(Shading::GouraudFloat);
 pub(super) const PHONG: FaceShading = FaceShading::By(Shading::Phong);

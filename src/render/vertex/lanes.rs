@@ -1,4 +1,4 @@
-//! The most common vertex stages, eight at a time: f32 suffices, and suns light matt surfaces.
+//! The usual vertex stages, eight at a time: where f32 suffices, and suns light matt surfaces.
 //!
 //! Each vertex gets the same values as from [`ObjectView::project`] and
 //! [`both_sides`](crate::light::both_sides): the operations and their order are the same, and each

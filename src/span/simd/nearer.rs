@@ -67,8 +67,8 @@ enum Own {
 /// that fills one span would be too large to be inlined in the loop, and is a quarter slower.)
 #[target_feature(enable = "avx2")]
 fn fill(avx2: Avx2, pixels: &mut [u8], cells: &mut [u32], spans: &SpanList, own: impl Fn(&Span) -> Own) -> u32 {
-    // Pixels of all iterations, four for each span and these; and per lane those that were not written, as a negative
-    // count. Sums are modulo 2³².
+    // Pixels of all iterations, less four for each span; and per lane those that were not written, as a negative count.
+    // Sums are modulo 2³².
     let mut more = 0_u32;
     let mut stayed = _mm256_setzero_si256();
     let (mut number, count) = (0, spans.count());

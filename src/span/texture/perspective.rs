@@ -241,12 +241,12 @@ impl<S: Lanes8> QuotientsAlong<S> for Quotients<S> {
     }
 }
 
-/// The greatest margin with which quotients in f32 are taken: more of them would be undecided.
+/// The greatest margin allowed for quotients in f32: a larger one would leave more undecided.
 const MAX_MARGIN: f64 = 128.0;
 
-/// How far quotients in f32 may be off in triangles, in 1/65,536 of a texel, or 0 where they may be off by too much. It
-/// is given, in the same unit, the greatest difference between their coordinates, the first of which lies in the texel
-/// at the base; and the least and the greatest depth.
+/// How far quotients in f32 may be off in triangles, in 1/65,536 of a texel, or 0 where that is too far. It takes, in
+/// the same unit, the greatest difference between a triangle's coordinates, the first of which lies in the texel at the
+/// base; and the least and the greatest depth.
 ///
 /// With f32, k·dn + n and k·dd + d are summed, divided, and rounded to an integer t. Let ε = 2⁻²⁴, the error of one
 /// rounding, Q the greatest quotient from the base on, D the row's largest divisor, R the ratio of D to the smallest:
