@@ -1,7 +1,6 @@
 //! Failures of the program: one line and an exit status.
 
 use std::fmt;
-use std::process::ExitCode;
 
 use mode13h::export::{ExportError, ExportErrorKind, PictureError};
 use mode13h::render::RenderError;
@@ -51,10 +50,6 @@ impl Failure {
 
     pub(crate) fn status(&self) -> u8 {
         self.status
-    }
-
-    pub(crate) fn exit_code(&self) -> ExitCode {
-        ExitCode::from(self.status)
     }
 }
 

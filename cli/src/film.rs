@@ -61,7 +61,7 @@ pub(crate) struct Figures {
 pub(crate) struct Film {
     kind: Kind,
     out: PathBuf,
-    frames: u32,
+    pub(crate) frames: u32,
     /// True if the number of frames was given.
     is_told: bool,
     rate: FrameRate,
@@ -104,10 +104,6 @@ impl Film {
             // Saturates.
             self.frames = (seconds * self.rate.frames_per_second()).round().max(1.0) as u32;
         }
-    }
-
-    pub(crate) fn frames(&self) -> u32 {
-        self.frames
     }
 
     /// Draws the frames with `draw`, by as many artists at a time as there are threads in the current pool, writes

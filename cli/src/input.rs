@@ -198,7 +198,7 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
             .map(|model| Input::Model(Box::new(model)));
     };
     let scene_file::Loaded { scene, look, warnings, files, playbacks, .. } = loaded?;
-    read_files::add_all(&files);
+    files.iter().for_each(|file| read_files::add(file));
     for warning in warnings {
         warn(warning);
     }
@@ -217,7 +217,7 @@ fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
 /// The model of a file that was read. Warnings go to standard error, a line each.
 fn of_file(name: String, loaded: model_file::Loaded) -> Model {
     let model_file::Loaded { mesh, textures, up, warnings, files, lights, camera, rig, .. } = loaded;
-    read_files::add_all(&files);
+    files.iter().for_each(|file| read_files::add(file));
     warnings.iter().for_each(warn);
     Model { name, mesh, textures, up, lights, camera, rig, clip: 0, is_shape: false }
 }

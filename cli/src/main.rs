@@ -41,7 +41,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             output::note(&failure);
-            failure.exit_code()
+            ExitCode::from(failure.status())
         }
     }
 }

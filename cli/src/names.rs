@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
-use crate::read_files;
 
 /// The names of a series of files.
 pub(crate) struct Names {
@@ -33,11 +32,6 @@ impl Names {
             Some((before, digits, behind)) => self.out.with_file_name(format!("{before}{number:0digits$}{behind}")),
             None => self.out.clone(),
         }
-    }
-
-    /// A failure if one of the first `frames` names is that of a file that was read.
-    pub(crate) fn spare(&self, frames: u32) -> Result<(), Failure> {
-        (0..frames).try_for_each(|number| read_files::spare(&self.of(number)))
     }
 }
 

@@ -213,10 +213,7 @@ impl Moment {
 impl Drawing {
     /// The kernel named by the option, or else by the environment, or else the fastest.
     pub(crate) fn kernel(&self) -> Result<Kernel, Failure> {
-        if let Some(kernel) = self.pipeline.kernel {
-            return Ok(kernel);
-        }
-        default_kernel()
+        self.pipeline.kernel.map_or_else(default_kernel, Ok)
     }
 
     /// The options in [`IGNORED_BY_DOS`] that were given.
@@ -257,9 +254,7 @@ impl Drawing {
     pub(crate) fn still(&self, input: Input) -> Result<Turntable, Failure> {
         let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
         let mut stage = self.stage(input)?;
-        if is_reframed {
-            stage.frames_still = true;
-        }
+        stage.frames_still = is_reframed;
         Ok(stage)
     }
 
@@ -407,16 +402,13 @@ fn camera(words: &str) -> Result<(Vec3, Vec3), String> {
 /// Background that a frame is cleared to, on the command line.
 fn background(words: &str) -> Result<Background, String> {
     let digits = words.strip_prefix('#').unwrap_or(words);
-    let is_color = digits.len() == 6 && digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let is_hex = digits.bytes().all(|digit| digit.is_ascii_hexdigit());
+    let is_color = digits.len() == 6 && is_hex;
     if is_color && let Ok(color) = u32::from_str_radix(digits, 16) {
-        let [_, r, g, b] = color.to_be_bytes();
-        return Ok(Background::Color(Rgb::new(r, g, b)));
+        return Ok(Background::Color(Rgb::from(color)));
     }
-    if let Some(short) = words.strip_prefix('#')
-        && short.len() == 3
-        && short.bytes().all(|digit| digit.is_ascii_hexdigit())
-    {
-        let long: String = short.chars().flat_map(|digit| [digit, digit]).collect();
+    if words.starts_with('#') && digits.len() == 3 && is_hex {
+        let long: String = digits.chars().flat_map(|digit| [digit, digit]).collect();
         return Err(format!("{words}: a colour has six digits: '#{long}'"));
     }
     let entry = words.parse().map(Background::Entry);

@@ -81,7 +81,7 @@ pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Res
     read_files::spare(path)?;
     let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
     let written = write().map_err(Into::into)?;
-    read_files::add_written(path);
+    read_files::note(path, "an output of this command");
     Ok(written)
 }
 

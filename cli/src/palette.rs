@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgGroup, Args};
 use mode13h::Angle;
-use mode13h::export::{self, Picture, PixelShape, Png, Scale};
+use mode13h::export::{self, Picture, Png, Scale};
 use mode13h::palette::builtin::Builtin;
 use mode13h::palette::{Palette, builtin};
 use mode13h::scene::UpAxis;
@@ -127,7 +127,7 @@ fn make(
     out.map_or(Ok(()), read_files::spare)?;
     let name = model.name.clone();
     let mut stage = model.stage(up, false)?;
-    let automatic = stage.automatic()?.clone();
+    let automatic = stage.automatic()?;
     let mut made = Vec::new();
     let materials = stage.scene.objects().iter().flat_map(|object| &object.materials);
     for (material, entries) in materials.zip(automatic.entries.iter().flatten()) {
@@ -158,14 +158,7 @@ fn convert(name: &str, palette: &Palette, out: &Path) -> Result<(), Failure> {
 /// The 256 colours in 16 rows of 16, each a square of 16 pixels.
 fn chart(palette: &Palette, out: &Path) -> Result<(), export::ExportError> {
     let indices: Vec<u8> = (0..=255).collect();
-    let squares = Picture {
-        pixels: &indices,
-        width: 16,
-        height: 16,
-        pitch: 16,
-        palette: palette.colors(),
-        shape: PixelShape::default(),
-    };
+    let squares = Picture::of(&indices, 16, palette);
     Png { scale: Scale::To { width: 256, height: 256 }, rgb: false }.save(&squares, out)
 }
 

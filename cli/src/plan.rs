@@ -199,13 +199,6 @@ fn near_warning(needed: f32) -> String {
 /// Columns of text.
 const WIDTH: usize = 100;
 
-/// The widths of a table's columns, except the last.
-struct Widths {
-    effect: usize,
-    choice: usize,
-    price: usize,
-}
-
 /// Objects that share a table, by name, and its contents: decisions, each with its text.
 type Group<'a> = (Vec<String>, Vec<(&'a Row, String)>);
 
@@ -223,11 +216,11 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
         })
         .collect();
     let widest = |of: &dyn Fn(&(&Row, String)) -> usize| priced.iter().map(of).max().unwrap_or_default();
-    let widths = Widths {
-        effect: widest(&|(row, _)| row.effect.name().len()),
-        choice: widest(&|(row, _)| row.choice.len()),
-        price: widest(&|(_, price)| price.len()),
-    };
+    let widths = [
+        widest(&|(row, _)| row.effect.name().len()),
+        widest(&|(row, _)| row.choice.len()),
+        widest(&|(_, price)| price.len()),
+    ];
     let objects: Vec<&[(&Row, String)]> = priced.chunk_by(|(a, _), (b, _)| a.index == b.index).collect();
     let said = |row: &Row| (row.effect, row.on, row.choice, row.reason.clone());
     let common: Vec<(&Row, String)> = match objects.as_slice() {
@@ -240,7 +233,7 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
     };
     let mut text = String::new();
     if !common.is_empty() {
-        text += &table("all objects", &common, &widths);
+        text += &table("all objects", &common, widths);
     }
     // Several objects may have the same name.
     let heading = |row: &Row| match objects.iter().filter(|object| object[0].0.object == row.object).count() {
@@ -260,13 +253,13 @@ fn tables(rows: &[Row], prices: Option<&[Option<u64>]>) -> String {
         }
     }
     for (names, rows) in groups.iter().filter(|(_, rows)| !rows.is_empty()) {
-        text += &table(&names.join(", "), rows, &widths);
+        text += &table(&names.join(", "), rows, widths);
     }
     text
 }
 
-fn table(heading: &str, rows: &[(&Row, String)], widths: &Widths) -> String {
-    let Widths { effect, choice, price } = *widths;
+/// A table whose columns, except the last, have these widths.
+fn table(heading: &str, rows: &[(&Row, String)], [effect, choice, price]: [usize; 3]) -> String {
     let columns = |name: &str, on: &str, of: &str, ns: &str| {
         let mut line = format!("  {name:effect$}  {on:3}");
         if choice > 0 {

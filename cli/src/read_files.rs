@@ -10,32 +10,26 @@ use crate::failure::Failure;
 /// The files so far, the names that led to them, and whether they were read or written.
 static USED: Mutex<Vec<(Identity, PathBuf, &str)>> = Mutex::new(Vec::new());
 
-/// The identity of a file, whatever name leads to it.
-#[derive(PartialEq, Eq)]
-enum Identity {
-    /// Device and number of the file, which are the same through links of both kinds.
-    #[cfg(unix)]
-    Node(u64, u64),
-    /// The path without links.
-    #[cfg(not(unix))]
-    Path(PathBuf),
-}
+/// Device and number of a file, which are the same through links of both kinds.
+#[cfg(unix)]
+type Identity = (u64, u64);
+/// The path without links.
+#[cfg(not(unix))]
+type Identity = PathBuf;
 
-impl Identity {
-    /// Identity of an ordinary file; `None` for anything else. Writing to a device or a pipe does not replace it, and a
-    /// file that does not exist cannot be lost.
-    fn of(path: &Path) -> Option<Identity> {
-        let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
-        #[cfg(unix)]
-        {
-            use std::os::unix::fs::MetadataExt;
-            Some(Identity::Node(metadata.dev(), metadata.ino()))
-        }
-        #[cfg(not(unix))]
-        {
-            drop(metadata);
-            fs::canonicalize(path).ok().map(Identity::Path)
-        }
+/// Identity of an ordinary file, whatever name leads to it; `None` for anything else. Writing to a device or a pipe
+/// does not replace it, and a file that does not exist cannot be lost.
+fn identity(path: &Path) -> Option<Identity> {
+    let metadata = fs::metadata(path).ok().filter(fs::Metadata::is_file)?;
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Some((metadata.dev(), metadata.ino()))
+    }
+    #[cfg(not(unix))]
+    {
+        drop(metadata);
+        fs::canonicalize(path).ok()
     }
 }
 
@@ -57,13 +51,9 @@ pub(crate) fn add(path: &Path) {
     note(path, "an input");
 }
 
-/// Records that a file was written.
-pub(crate) fn add_written(path: &Path) {
-    note(path, "an output of this command");
-}
-
-fn note(path: &Path, what: &'static str) {
-    if let Some(identity) = Identity::of(path) {
+/// Records what a file is to this command.
+pub(crate) fn note(path: &Path, what: &'static str) {
+    if let Some(identity) = identity(path) {
         let mut used = USED.lock().unwrap_or_else(PoisonError::into_inner);
         if used.iter().all(|(other, ..)| *other != identity) {
             used.push((identity, path.to_path_buf(), what));
@@ -71,16 +61,11 @@ fn note(path: &Path, what: &'static str) {
     }
 }
 
-/// Records that files are read.
-pub(crate) fn add_all(paths: &[PathBuf]) {
-    paths.iter().for_each(|path| add(path));
-}
-
 /// Fails if writing under this name would replace a file that this command has read or written.
 /// [`output::file`](crate::output::file) checks this; a command that takes long also checks it before it begins, once
 /// everything is read.
 pub(crate) fn spare(out: &Path) -> Result<(), Failure> {
-    let Some(identity) = Identity::of(out) else { return Ok(()) };
+    let Some(identity) = identity(out) else { return Ok(()) };
     let used = USED.lock().unwrap_or_else(PoisonError::into_inner);
     let Some((_, path, what)) = used.iter().find(|(other, ..)| *other == identity) else { return Ok(()) };
     let out_name = out.display();

@@ -1,7 +1,6 @@
 //! `mode13h render`: a picture, numbered pictures, or an animation.
 
 use std::ffi::OsString;
-use std::fmt;
 use std::io::{self, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
@@ -148,31 +147,38 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let input = options.drawing.input(&options.input)?;
     let is_still = matches!(out, Out::Pictures(_, 1) | Out::Terminal(_));
     let stage = if is_still { options.drawing.still(input) } else { options.drawing.stage(input) }?;
-    out.lasts(stage.seconds());
+    if let Out::Film(film) = &mut out {
+        film.lasts(stage.scene.duration);
+    }
     let frames = out.frames();
-    out.spare()?;
+    out.files().iter().try_for_each(|file| read_files::spare(file))?;
     if options.out.is_none() {
         out.files().iter().try_for_each(|file| output::refuse_overwriting(file, options.force))?;
     }
     let kernel = options.drawing.kernel()?;
-    let progress = progress(frames);
+    let progress = match frames {
+        1 => ProgressBar::hidden(),
+        _ => output::bar(frames.into(), "{bar:40} {pos}/{len} frames, {eta} left"),
+    };
     let motion = Motion::new(options, &out, &stage);
-    let run = Run::of(options, &motion, &stage, kernel)?;
+    let timed = timed_frames(options, &motion, &stage, kernel)?;
     let make = || Artist {
         renderer: options.shading.renderer(&options.drawing, kernel),
         stage: stage.clone(),
         vga: Vga::new(),
-        square: options.size.map(|(width, height)| SquareFrame::new(width, height)),
+        square: options.size.map(|(width, height)| (width, height, vec![0; width as usize * height as usize])),
     };
     let renderer_pool = RendererPool::new(make);
     let drawn: Mutex<Vec<Drawn>> = Mutex::default();
     let draw = |artist: &mut Artist, number: u32| -> Result<(), Failure> {
-        let stats = artist.draw(&motion, &run, number)?;
-        let timed = run.timed.get(number as usize).copied();
+        let timed = timed.get(number as usize).copied();
+        let stats = artist.draw(&motion, timed.map(|timed| timed.error), number)?;
         if options.stats && options.json {
             drawn.lock().unwrap_or_else(PoisonError::into_inner).push((number, stats, timed));
         } else if options.stats {
-            let timed = timed.map(|timed| timed.to_string()).unwrap_or_default();
+            let timed = timed.map_or(String::new(), |Timed { max_time, fits, .. }| {
+                format!(", {} {max_time} ms", if fits { "fits in" } else { "takes more than" })
+            });
             progress.suspend(|| output::note(format_args!("frame {number}: {stats}{timed}")));
         }
         Ok(())
@@ -328,13 +334,6 @@ impl Out {
         }
     }
 
-    /// Sets the duration of an animation whose number of frames was not given.
-    fn lasts(&mut self, seconds: f64) {
-        if let Out::Film(film) = self {
-            film.lasts(seconds);
-        }
-    }
-
     /// The files that are written.
     fn files(&self) -> Vec<PathBuf> {
         match self {
@@ -344,19 +343,10 @@ impl Out {
         }
     }
 
-    /// Fails if a file that was read would be overwritten.
-    fn spare(&self) -> Result<(), Failure> {
-        match self {
-            Out::Pictures(names, frames) => names.spare(*frames),
-            Out::Film(film) => film.file().map_or(Ok(()), read_files::spare),
-            Out::Terminal(_) => Ok(()),
-        }
-    }
-
     fn frames(&self) -> u32 {
         match self {
             Out::Pictures(_, frames) => *frames,
-            Out::Film(film) => film.frames(),
+            Out::Film(film) => film.frames,
             Out::Terminal(_) => 1,
         }
     }
@@ -412,58 +402,40 @@ type Drawn = (u32, Stats, Option<Timed>);
 /// A frame that was timed.
 #[derive(Clone, Copy)]
 struct Timed {
+    /// The error within which it is drawn.
+    error: f32,
     /// The time allowed, in milliseconds.
     max_time: f32,
     milliseconds: f64,
     fits: bool,
 }
 
-impl fmt::Display for Timed {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let says = if self.fits { "fits in" } else { "takes more than" };
-        write!(f, ", {says} {} ms", self.max_time)
-    }
-}
-
-/// The error budget of each frame. If frames have to fit in a time, all of them are drawn once, one after the other, to
-/// find their errors before the first is written.
-#[derive(Default)]
-struct Run {
-    /// Errors of all frames; empty if no time was asked for.
-    errors: Vec<f32>,
-    /// Times of all frames; empty if no time was asked for.
-    timed: Vec<Timed>,
-}
-
-impl Run {
-    fn of(options: &Options, motion: &Motion, stage: &Turntable, kernel: Kernel) -> Result<Run, Failure> {
-        let Options { shading, drawing, .. } = options;
-        let frames = motion.frames;
-        let mut renderer = shading.renderer(drawing, kernel);
-        let (Some(max_time), Some(mut pace)) = (shading.max_time(), shading.pace(&renderer)) else {
-            return Ok(Run::default());
-        };
-        let (mut stage, mut vga, mut run) = (stage.clone(), Vga::new(), Run::default());
-        for number in 0..frames {
-            let (seconds, pose) = motion.of(number, &stage);
-            stage.show(seconds, pose);
-            if number == 0 {
-                calibrate((&mut renderer, &mut pace), &stage.scene, &mut vga, clock())?;
-            }
-            run.errors.push(pace.error());
-            let fits = pace.fits();
-            let timed = time_frame((&mut renderer, &mut pace), &stage.scene, &mut vga, clock());
-            let (_, milliseconds) = timed?;
-            run.timed.push(Timed { max_time, milliseconds, fits });
+/// If frames have to fit in a time, all of them are drawn once, one after the other, to find their errors before the
+/// first is written. Empty if no time was asked for.
+fn timed_frames(options: &Options, motion: &Motion, stage: &Turntable, kernel: Kernel) -> Result<Vec<Timed>, Failure> {
+    let Options { shading, drawing, .. } = options;
+    let frames = motion.frames;
+    let mut renderer = shading.renderer(drawing, kernel);
+    let (Some(max_time), Some(mut pace)) = (shading.max_time(), shading.pace(&renderer)) else {
+        return Ok(Vec::new());
+    };
+    let (mut stage, mut vga, mut all) = (stage.clone(), Vga::new(), Vec::new());
+    for number in 0..frames {
+        let (seconds, pose) = motion.of(number, &stage);
+        stage.show(seconds, pose);
+        if number == 0 {
+            calibrate((&mut renderer, &mut pace), &stage.scene, &mut vga, clock())?;
         }
-        let late = run.timed.iter().filter(|frame| !frame.fits).count();
-        if late > 0 {
-            let which =
-                if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
-            output::note(format_args!("{which} longer than {max_time} ms even at the largest error allowed"));
-        }
-        Ok(run)
+        let (error, fits) = (pace.error(), pace.fits());
+        let (_, milliseconds) = time_frame((&mut renderer, &mut pace), &stage.scene, &mut vga, clock())?;
+        all.push(Timed { error, max_time, milliseconds, fits });
     }
+    let late = all.iter().filter(|frame| !frame.fits).count();
+    if late > 0 {
+        let which = if frames == 1 { "the frame takes".to_string() } else { format!("{late} of {frames} frames take") };
+        output::note(format_args!("{which} longer than {max_time} ms even at the largest error allowed"));
+    }
+    Ok(all)
 }
 
 /// Draws frames, one after the other. Each is drawn from its own number alone, never from the frame before it, so
@@ -473,31 +445,19 @@ struct Artist {
     stage: Turntable,
     /// The VGA: its palette, and its frame unless frames have another size.
     vga: Vga,
-    square: Option<SquareFrame>,
-}
-
-/// A frame of square pixels.
-struct SquareFrame {
-    width: u32,
-    height: u32,
-    pixels: Vec<u8>,
-}
-
-impl SquareFrame {
-    fn new(width: u32, height: u32) -> SquareFrame {
-        SquareFrame { width, height, pixels: vec![0; width as usize * height as usize] }
-    }
+    /// Width, height and pixels of a frame of square pixels.
+    square: Option<(u32, u32, Vec<u8>)>,
 }
 
 impl Artist {
-    fn draw(&mut self, motion: &Motion, run: &Run, number: u32) -> Result<Stats, Failure> {
-        if let Some(error) = run.errors.get(number as usize) {
-            self.renderer.settings.accuracy = Some(Accuracy::WithinError(*error));
+    fn draw(&mut self, motion: &Motion, error: Option<f32>, number: u32) -> Result<Stats, Failure> {
+        if let Some(error) = error {
+            self.renderer.settings.accuracy = Some(Accuracy::WithinError(error));
         }
         let (seconds, pose) = motion.of(number, &self.stage);
         self.stage.show(seconds, pose);
         let scene = &self.stage.scene;
-        let Some(SquareFrame { width, height, pixels }) = &mut self.square else {
+        let Some((width, height, pixels)) = &mut self.square else {
             return self.renderer.draw(scene, &mut self.vga).map_err(Failure::from);
         };
         let frame = Frame::new(pixels, *width, *height, *width as usize).map_err(Failure::words)?;
@@ -510,15 +470,7 @@ impl Artist {
     fn frame(&self) -> film::Frame {
         match &self.square {
             None => film::Frame::of(&self.vga),
-            Some(SquareFrame { width, pixels, .. }) => film::Frame::square(pixels.clone(), *width, self.vga.palette()),
+            Some((width, _, pixels)) => film::Frame::square(pixels.clone(), *width, self.vga.palette()),
         }
-    }
-}
-
-/// A progress bar on standard error, if that is a terminal and there is more than one frame.
-fn progress(frames: u32) -> ProgressBar {
-    match frames == 1 {
-        true => ProgressBar::hidden(),
-        false => output::bar(frames.into(), "{bar:40} {pos}/{len} frames, {eta} left"),
     }
 }

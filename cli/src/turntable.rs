@@ -187,13 +187,10 @@ impl Turntable {
 
     /// Returns whether any of its objects has colours of its own: a texture, or a surface that is not grey.
     pub(crate) fn has_colors(&self) -> bool {
+        let mut surfaces = self.scene.objects().iter().flat_map(|object| object.mesh().surfaces());
         self.scene.lights().iter().any(|light| is_colored(light.color()))
-            || self.scene.objects().iter().zip(&self.materials).any(|(object, materials)| has_colors(object, materials))
-    }
-
-    /// Length of a round in seconds: for a model, a turn.
-    pub(crate) fn seconds(&self) -> f64 {
-        self.scene.duration
+            || surfaces.any(|surface| is_colored(surface.diffuse))
+            || self.materials.iter().flatten().any(|material| material.texture.is_some())
     }
 
     /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself, time passes instead,
@@ -325,25 +322,22 @@ impl Turntable {
             Colors::Palette(palette) => {
                 self.scene.set_palette(Palette::clone(palette));
             }
-            Colors::Auto => self.automatic()?.clone().apply(&mut self.scene),
+            Colors::Auto => self.automatic()?.apply(&mut self.scene),
         }
         self.colors = Some(colors.clone());
         Ok(())
     }
 
     /// The palette made for what is visible over a round, computed once.
-    pub(crate) fn automatic(&mut self) -> Result<&AutomaticPalette, RenderError> {
-        let made = match self.automatic.take() {
-            Some(made) => made,
-            None => {
-                let mut made = self.made()?;
-                if let Some(look) = self.look {
-                    made.palette = look.rounded(&made.palette);
-                }
-                made
-            }
-        };
-        Ok(self.automatic.insert(made))
+    pub(crate) fn automatic(&mut self) -> Result<AutomaticPalette, RenderError> {
+        if let Some(made) = &self.automatic {
+            return Ok(made.clone());
+        }
+        let mut made = self.made()?;
+        if let Some(look) = self.look {
+            made.palette = look.rounded(&made.palette);
+        }
+        Ok(self.automatic.insert(made).clone())
     }
 
     /// Makes a palette for what is visible over a round.
@@ -392,11 +386,6 @@ impl Turntable {
 
 fn is_colored([red, green, blue]: [f32; 3]) -> bool {
     red != green || green != blue
-}
-
-fn has_colors(object: &Object, materials: &[Material]) -> bool {
-    object.mesh().surfaces().iter().any(|surface| is_colored(surface.diffuse))
-        || materials.iter().any(|material| material.texture.is_some())
 }
 
 /// Scales a camera's picture. To enlarge it, the view is narrowed, because going nearer would end inside the model; to

@@ -133,7 +133,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
     }
     match &words.command {
         None => {
-            if let Some(command) = words.demo.more_inputs().iter().find_map(|word| named(word)) {
+            if let Some(command) = words.demo.inputs.iter().skip(1).find_map(named) {
                 return Err(Failure::words(format!("{command} is a command and goes before INPUT")));
             }
             mistyped_command().map_or(Ok(()), |sentence| Err(Failure::words(sentence)))?;

@@ -5,11 +5,10 @@ mod shapes;
 
 use std::fmt::Display;
 
-use crate::support::triangles::{drawn, drawn_by_the_oracle, rect, triangle, vertex};
+use crate::support::triangles::{drawn, drawn_by_the_oracle, one_by_one, rect, together, triangle, vertex};
 use crate::support::tried::Tried;
 use against_the_oracle::{batches_against_the_oracle, orders_and_windings};
 use mode13h::internals::raster::effects::{Attributes, EffectBatch, EffectFace, PixelPipeline, ShadeSource};
-use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
@@ -54,18 +53,6 @@ fn any(random: &mut Random, width: i64, height: i64) -> [Vertex; 3] {
             small(random, width, height, reach)
         }
     }
-}
-
-/// The reference for batches.
-fn one_by_one(raster: &mut Raster<'_>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
-    let mut sum = DrawStats::default();
-    triangles.iter().for_each(|(vertices, interpolation)| sum += raster.triangle(vertices, *interpolation));
-    sum
-}
-
-/// Draws triangles together.
-fn together<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
-    raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
 }
 
 /// The result and counts that `on` returns for the portable kernel, one triangle at a time. Every kernel must give the
@@ -341,11 +328,7 @@ fn a_batch_keeps_to_the_rows_of_its_depth_buffer() {
     let (mut missed, mut written) = (0, 0);
     for (rows, held) in [(0..8, 8..16), (8..16, 0..8), (0..8, 3..11), (3..11, 0..8), (0..8, 0..5), (0..5, 0..8)] {
         for _ in 0..50 {
-            let mut triangles = Vec::new();
-            for _ in 0..50 {
-                let (vertices, interpolation) = (small(&mut random, WIDTH.into(), 16, 900), interpolation(&mut random));
-                triangles.push((vertices, interpolation));
-            }
+            let triangles = [(); 50].map(|()| (small(&mut random, WIDTH.into(), 16, 900), interpolation(&mut random)));
             let on = |kernel: Kernel, draw: &dyn Fn(&mut Raster<'_>) -> DrawStats| {
                 let (mut bytes, mut depths) = ([99; 8 * WIDTH as usize], [5; 8 * WIDTH as usize]);
                 let mut other = bytes;

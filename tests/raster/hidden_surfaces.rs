@@ -1,11 +1,10 @@
 //! Hidden surfaces in the raster: depth buffer against scan-line, byte for byte, on all kinds of input; depth order
 //! against exact planes. Whole scenes are in `hidden_scenes.rs`.
 
-use crate::support::triangles::{rect, triangle, vertex};
+use crate::support::triangles::{one_by_one, rect, triangle, vertex};
 use crate::support::tried::Tried;
 use mode13h::fixed::U8F8;
 use mode13h::internals::raster::scan_line::Lists;
-use mode13h::internals::span::depth::Cell;
 use mode13h::raster::{DepthBuffer, DepthMemory, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 use mode13h::span::Kernel;
 use mode13h_conformance::Random;
@@ -47,20 +46,12 @@ impl Sheet {
 
     fn depth_buffer(self, faces: &[Face]) -> (Vec<u8>, DrawStats) {
         let mut depths: Vec<u32> = Vec::new();
-        self.draw(|raster| in_turn(raster.with_cleared_depth(&mut depths), faces))
+        self.draw(|raster| one_by_one(&mut raster.with_cleared_depth(&mut depths), faces))
     }
 
     fn scan_line(self, lists: &mut Lists, faces: &[Face]) -> (Vec<u8>, DrawStats) {
         self.draw(|mut raster| raster.scan_line(faces, lists))
     }
-}
-
-fn in_turn<D: Cell>(mut raster: Raster<'_, D>, faces: &[Face]) -> DrawStats {
-    let mut drawn = DrawStats::default();
-    for (vertices, interpolation) in faces {
-        drawn += raster.triangle(vertices, *interpolation);
-    }
-    drawn
 }
 
 /// Checks both methods, whole, clipped and in bands.
@@ -87,7 +78,7 @@ fn check(tried: &mut Tried, random: &mut Random, lists: &mut Lists, (width, heig
         let mut depths: Vec<u32> = Vec::new();
         let mut shown = 0;
         sheet.draw(|raster| {
-            let drawn = in_turn(raster.with_cleared_depth(&mut depths), faces);
+            let drawn = one_by_one(&mut raster.with_cleared_depth(&mut depths), faces);
             shown += depths.iter().filter(|depth| **depth > 0).count();
             drawn
         });
@@ -189,7 +180,7 @@ fn a_depth_memory_is_as_good_as_cleared() {
                 if as_list {
                     return raster.triangles(faces.iter().map(|face| (face, interpolation)));
                 }
-                in_turn(raster, &faces.iter().map(|face| (*face, interpolation)).collect::<Vec<_>>())
+                one_by_one(&mut raster, &faces.iter().map(|face| (*face, interpolation)).collect::<Vec<_>>())
             };
             let sheet = Sheet::new(size.0, size.1);
             let shared = sheet.draw(|raster| draw(raster.with_kernel(kernel).with_depth_memory(&mut memory)));
@@ -319,7 +310,7 @@ fn d1_three_faces_in_a_circle() {
         // No painting order is right without a depth for every pixel.
         for order in [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]] {
             let faces = order.map(|i| face(corners[i], 10 + i as u8));
-            let (painted, _) = Sheet::new(SHEET.0, SHEET.1).draw(|raster| in_turn(raster, &faces));
+            let (painted, _) = Sheet::new(SHEET.0, SHEET.1).draw(|mut raster| one_by_one(&mut raster, &faces));
             assert_ne!(painted, right, "{order:?} of {corners:?}");
         }
     }
@@ -368,10 +359,11 @@ fn d3_the_first_submitted_of_equals_wins() {
                 triangles.iter().zip(10..).map(|(v, index)| (*v, Interpolation::Flat(index))).collect();
             // Drawn from last to first without depths, so the first is on top.
             let reversed: Vec<Face> = faces.iter().rev().copied().collect();
-            let (right, _) = sheet.draw(|raster| in_turn(raster, &reversed));
+            let (right, _) = sheet.draw(|mut raster| one_by_one(&mut raster, &reversed));
             assert_eq!(sheet.depth_buffer(&faces).0, right, "{faces:?}");
             assert_eq!(sheet.scan_line(&mut lists, &faces).0, right, "{faces:?}");
-            let (narrow, _) = sheet.draw(|raster| in_turn(raster.with_cleared_depth(&mut Vec::<u16>::new()), &faces));
+            let (narrow, _) =
+                sheet.draw(|raster| one_by_one(&mut raster.with_cleared_depth(&mut Vec::<u16>::new()), &faces));
             assert_eq!(narrow, right, "u16 cells, {faces:?}");
             pixels += right.iter().filter(|byte| **byte >= 10).count();
         }
@@ -424,7 +416,7 @@ fn d_u16_cells_hold_the_upper_bits_rounded_up() {
         let frame = Frame::new(&mut drawn, WIDTH, HEIGHT, WIDTH as usize).expect("legal");
         let mut depth = DepthBuffer::new(&mut depths, &frame).expect("long enough");
         depth.clear();
-        in_turn(Raster::new(frame).with_depth(depth), &faces);
+        one_by_one(&mut Raster::new(frame).with_depth(depth), &faces);
         assert_eq!(drawn, bytes, "{faces:?}");
         assert!(depths.iter().zip(&cells).all(|(is, should)| u128::from(*is) == *should), "{faces:?}");
     }

@@ -1,6 +1,8 @@
 //! Single triangles against the oracle: cover, range, shades, clip rectangles, bands, depth.
 
-use crate::support::triangles::{clip_to, draw, drawn, drawn_by_the_oracle, edge_beside, rect, triangle, vertex};
+use crate::support::triangles::{
+    clip_to, draw, drawn, drawn_by_the_oracle, edge_beside, one_by_one, rect, together, triangle, vertex,
+};
 use crate::support::tried::Tried;
 use mode13h::fixed::{I24F8, U8F8};
 use mode13h::internals::raster::reference::cover::SortedTriangle;
@@ -587,12 +589,8 @@ fn a_list_is_drawn_as_triangle_by_triangle() {
             let stats = draw(&mut Raster::new(frame).with_depth(depth));
             (bytes, depths, stats)
         };
-        let at_once = drawn(&|raster| raster.triangles(list.iter().map(|(corners, shading)| (corners, *shading))));
-        let apart = drawn(&|raster| {
-            let mut stats = DrawStats::default();
-            list.iter().for_each(|(corners, shading)| stats += raster.triangle(corners, *shading));
-            stats
-        });
+        let at_once = drawn(&|raster| together(raster, &list));
+        let apart = drawn(&|raster| one_by_one(raster, &list));
         assert!(at_once == apart, "{length} triangles: {} and {}", at_once.2.pixels, apart.2.pixels);
         pixels += u64::from(apart.2.pixels);
         tried.add(1);

@@ -125,19 +125,15 @@ fn c3_what_is_very_far_is_drawn() {
 
 #[test]
 fn c1_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    corners_about_the_near_plane(
-        Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000),
-        VertexPath::Float,
-    );
+    let tried = Tried::new("c1_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
+    corners_about_the_near_plane(tried, VertexPath::Float);
 }
 
 #[test]
 #[ignore = "the long run: a million faces through the near plane"]
 fn c1_long_a_million_faces_through_the_near_plane() {
-    corners_about_the_near_plane(
-        Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000),
-        VertexPath::Float,
-    );
+    let tried = Tried::new("c1_long_a_million_faces_through_the_near_plane", 1_000_000);
+    corners_about_the_near_plane(tried, VertexPath::Float);
 }
 
 #[test]

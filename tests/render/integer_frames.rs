@@ -333,10 +333,8 @@ fn r7_a_floor_on_the_integer_path_is_closed_to_the_horizon() {
 
 #[test]
 fn c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0() {
-    corners_about_the_near_plane(
-        Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000),
-        VertexPath::Integer,
-    );
+    let tried = Tried::new("c1_on_the_integer_path_corners_behind_the_eye_on_the_near_plane_at_w_0", 4000);
+    corners_about_the_near_plane(tried, VertexPath::Integer);
 }
 
 #[test]

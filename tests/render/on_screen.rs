@@ -18,15 +18,18 @@ use mode13h_conformance::Random;
 const SCREEN: Screen = Screen { width: 400, height: 300, pixel_aspect: (1, 1) };
 const SIZE: usize = 400 * 300;
 
-fn draw(scene: &Scene, bytes: &mut [u8], clears: bool, way: Option<HiddenSurfaces>) {
+/// A frame full of `fill` once the scene is drawn.
+fn draw(scene: &Scene, fill: u8, clears: bool, way: Option<HiddenSurfaces>) -> Vec<u8> {
     let mut renderer = Renderer::new();
     renderer.settings.hidden_surfaces = way;
-    let frame = Frame::new(bytes, SCREEN.width, SCREEN.height, 400).expect("legal");
+    let mut bytes = vec![fill; SIZE];
+    let frame = Frame::new(&mut bytes, SCREEN.width, SCREEN.height, 400).expect("legal");
     let drawn = match clears {
         true => renderer.draw_frame(scene, frame, SCREEN.pixel_aspect),
         false => renderer.draw_over(scene, frame, SCREEN.pixel_aspect),
     };
     drawn.expect("drawn");
+    bytes
 }
 
 /// Leaving out objects that are out of sight changes no byte: a renderer that is kept draws the same frames as a new one
@@ -106,11 +109,7 @@ fn a_point_is_where_it_is_drawn() {
         scene.add(Object::new(shapes::sphere(12, 8)).at(at).scaled(0.05));
         scene.camera = Camera { eye: point() * 2.0, target: point(), ..Camera::default() };
         // Pixels that are the same over black and over white were drawn.
-        let [dark, bright] = [0, 255].map(|fill| {
-            let mut bytes = vec![fill; SIZE];
-            draw(&scene, &mut bytes, false, None);
-            bytes
-        });
+        let [dark, bright] = [0, 255].map(|fill| draw(&scene, fill, false, None));
         let drawn = (0..SIZE).filter(|&at| dark[at] == bright[at]);
         let pixels: Vec<(f32, f32)> = drawn.map(|at| ((at % 400) as f32, (at / 400) as f32)).collect();
         let Some([x, y, distance]) = scene.camera.project(at, SCREEN) else {
@@ -184,14 +183,8 @@ fn drawing_over_changes_what_is_drawn_and_no_more() {
     for way in
         [None, Some(HiddenSurfaces::PainterOrder), Some(HiddenSurfaces::ScanLine), Some(HiddenSurfaces::BackFaces)]
     {
-        let on = |fill: u8| {
-            let mut bytes = vec![fill; SIZE];
-            draw(&scene, &mut bytes, false, way);
-            bytes
-        };
-        let (dark, bright) = (on(0), on(255));
-        let mut cleared = vec![9; SIZE];
-        draw(&scene, &mut cleared, true, way);
+        let [dark, bright] = [0, 255].map(|fill| draw(&scene, fill, false, way));
+        let cleared = draw(&scene, 9, true, way);
         let mut drawn = 0;
         for (at, (&a, &b)) in dark.iter().zip(&bright).enumerate() {
             if (a, b) == (0, 255) {

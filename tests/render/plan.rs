@@ -639,14 +639,9 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
     const PART: usize = 16;
     const FRAMES: u8 = 4;
     let mut tried = Tried::new("mipmaps_lessen_sparkle_on_every_frame", 4 * 3 * u64::from(FRAMES));
-    let grey = |scene: &mut Scene| {
-        let ramp = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i / 4) as u8; 3]));
-        scene.palette = Some(mode13h::palette::Palette::from_colors(ramp));
-    };
-    let cube = |scene: &mut Scene| {
-        scene.palette = Some(mode13h::palette::builtin::by_name("cube").expect("built in").palette.clone());
-    };
-    let palettes: [&dyn Fn(&mut Scene); 2] = [&grey, &cube];
+    let ramp = core::array::from_fn(|i| mode13h::palette::Rgb::from_dac([(i / 4) as u8; 3]));
+    let grey = mode13h::palette::Palette::from_colors(ramp);
+    let palettes = [&grey, mode13h::palette::builtin::by_name("cube").expect("built in").palette];
     let picture = |scene: &Scene, part: usize, mapping: Mapping, mipmaps: bool| {
         let (width, height) = (SIZE.0 * part, SIZE.1 * part);
         let mut bytes = vec![0; width * height];
@@ -657,9 +652,10 @@ fn mipmaps_lessen_sparkle_on_every_frame() {
         renderer.draw_frame(scene, frame, (5, 6)).expect("a legal scene");
         shown(scene, &bytes)
     };
-    for (image, paint) in ["checker", "bricks"].into_iter().flat_map(|image| palettes.map(|paint| (image, paint))) {
+    for (image, palette) in ["checker", "bricks"].into_iter().flat_map(|image| palettes.map(|palette| (image, palette)))
+    {
         let mut scene = scenes::floor(image, 24.0);
-        paint(&mut scene);
+        scene.palette = Some(palette.clone());
         let (mut errors, mut sparkles) = ([[0.0; 2]; 3], [[0.0; 2]; 3]);
         // The reference, and for each mapping what is drawn without and with mipmaps.
         let mut before: Option<(Picture, [[Picture; 2]; 3])> = None;

@@ -10,21 +10,12 @@ use mode13h::glam::Vec3;
 use mode13h::light::{Light, Material};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::raster::{Interpolation, Vertex};
-use mode13h::render::{Renderer, Screen};
+use mode13h::render::Renderer;
 use mode13h::scene::{Object, Scene};
 use mode13h::settings::DitherPattern;
 use mode13h::settings::Shading;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle::{self, Point};
-
-/// The triangles that the raster gets.
-fn triangles(scene: &Scene) -> (Vec<[Vertex; 3]>, u64) {
-    let mut triangles = Vec::new();
-    let stats = Renderer::new()
-        .for_each_triangle(scene, Screen::MODE_13H, |vertices, _| triangles.push(*vertices))
-        .expect("a legal scene");
-    (triangles, stats.clipped)
-}
 
 /// In 1/256 pixel.
 type Place = (i32, i32);
@@ -100,12 +91,12 @@ fn r12_walls_that_are_split_are_closed() {
     let (mut split, mut clipped) = (0, 0);
     while tried.more() {
         let scene = wall(&mut random);
-        let (parts, cut) = triangles(&scene);
+        let parts = triangles_by(&mut Renderer::new(), &scene);
+        let (counts, stats) = counts_by(&mut Renderer::new(), &scene);
         split += usize::from(parts.len() > scene.objects()[0].mesh().triangles().len());
-        clipped += usize::from(cut > 0);
+        clipped += usize::from(stats.clipped > 0);
         let loops = outlines(&parts);
         assert!(loops.len() <= 1, "{} outlines of {} triangles", loops.len(), parts.len());
-        let (counts, _) = counts_by(&mut Renderer::new(), &scene);
         let outline = loops.first().cloned().unwrap_or_default();
         for y in 0..200 {
             for x in 0..320 {
@@ -131,7 +122,7 @@ fn r12_creases_are_split_alike_from_both_sides() {
         let mut coordinate = || 2.4 * random.unit() as f32 - 1.2;
         scene.add_light(Light::lamp([coordinate(), coordinate(), coordinate()], 2.0));
         scene.settings.tessellation = Some(1.0);
-        let (parts, _) = triangles(&scene);
+        let parts = triangles_by(&mut Renderer::new(), &scene);
         // Convex: what is visible has one outline, unless rounding flipped a face.
         let outlines = outlines(&parts);
         assert_eq!(outlines.len(), 1, "{} triangles", parts.len());
@@ -197,9 +188,9 @@ fn whole_faces_are_lit_at_their_own_middles_after_split_ones() {
 #[test]
 fn faces_far_from_a_highlight_are_not_split() {
     let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);
-    let (whole, _) = triangles(&scene);
+    let whole = triangles_by(&mut Renderer::new(), &scene);
     scene.settings.tessellation = Some(2.0);
-    let (split, _) = triangles(&scene);
+    let split = triangles_by(&mut Renderer::new(), &scene);
     assert!(split.len() > whole.len(), "{} of {}", split.len(), whole.len());
     let right = |corners: &&[Vertex; 3]| corners.iter().all(|corner| point(corner).0 > 200 * 256);
     assert!(whole.iter().filter(right).count() > 50);

@@ -15,13 +15,6 @@ pub struct Expected {
     pub counts: Vec<u32>,
 }
 
-/// A frame, the triangles that the raster got for it, and how often they cover each pixel.
-pub struct Judged {
-    pub triangles: Vec<([Vertex; 3], Interpolation)>,
-    pub counts: Vec<u32>,
-    pub stats: Stats,
-}
-
 /// Draws the triangles that the raster gets for a scene by the oracle. Each of its bytes must be within the bound.
 pub fn by_the_oracle(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Expected {
     let mut triangles = Vec::new();
@@ -57,12 +50,12 @@ pub fn by_the_oracle(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> 
 }
 
 /// Draws a scene, and compares its bytes with the oracle's for the triangles that the raster got.
-pub fn judged(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> Judged {
-    let Expected { triangles, bytes: expected, counts } = by_the_oracle(renderer, scene, screen);
-    let mut bytes = vec![0; expected.len()];
+pub fn judged(renderer: &mut Renderer, scene: &Scene, screen: Screen) -> (Expected, Stats) {
+    let expected = by_the_oracle(renderer, scene, screen);
+    let mut bytes = vec![0; expected.bytes.len()];
     let frame = Frame::new(&mut bytes, screen.width, screen.height, screen.width as usize).expect("legal");
     let stats = renderer.draw_frame(scene, frame, screen.pixel_aspect).expect("legal");
-    let differs = bytes.iter().zip(&expected).position(|(is, should)| is != should);
-    assert_eq!(differs, None, "{:?} instead of {:?} of {triangles:?}", bytes, expected);
-    Judged { triangles, counts, stats }
+    let differs = bytes.iter().zip(&expected.bytes).position(|(is, should)| is != should);
+    assert_eq!(differs, None, "{bytes:?} instead of {:?} of {:?}", expected.bytes, expected.triangles);
+    (expected, stats)
 }

@@ -50,10 +50,10 @@ pub fn odd_views(mut tried: Tried, path: VertexPath) {
         scene.camera.field_of_view = Angle::from_degrees(random.one_of(&[1.0, 40.0, 90.0, 179.0]));
         let mut renderer = Renderer::new();
         renderer.settings.vertex_path = Some(path);
-        let judged = judged(&mut renderer, &scene, screen);
-        assert_eq!(judged.stats.faces, 256);
+        let (judged, stats) = judged(&mut renderer, &scene, screen);
+        assert_eq!(stats.faces, 256);
         seen += u64::from(judged.counts.iter().any(|&times| times > 0));
-        clipped += u64::from(judged.stats.clipped > 0);
+        clipped += u64::from(stats.clipped > 0);
         let shades =
             || judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|vertex| vertex.shade().to_bits()));
         bright += u64::from(shades().any(|shade| shade == 65_280) && shades().any(|shade| shade < 32_640));

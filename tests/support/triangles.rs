@@ -1,7 +1,7 @@
 //! Triangles for the tests of the raster: plain, thin, small, large, on the grid of centres.
 
 use mode13h::fixed::{I24F8, U8F8};
-use mode13h::raster::{Frame, Interpolation, Raster, Rect, Vertex};
+use mode13h::raster::{Cell, DrawStats, Frame, Interpolation, Raster, Rect, Vertex};
 
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -123,6 +123,18 @@ pub fn drawn_by_the_oracle(
         bytes[pixel.y as usize * width as usize + pixel.x as usize] = Some(pixel.byte);
     }
     bytes
+}
+
+/// Draws triangles one by one.
+pub fn one_by_one<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
+    let mut sum = DrawStats::default();
+    triangles.iter().for_each(|(vertices, interpolation)| sum += raster.triangle(vertices, *interpolation));
+    sum
+}
+
+/// Draws triangles together.
+pub fn together<D: Cell>(raster: &mut Raster<'_, D>, triangles: &[([Vertex; 3], Interpolation)]) -> DrawStats {
+    raster.triangles(triangles.iter().map(|(vertices, interpolation)| (vertices, *interpolation)))
 }
 
 /// What a triangle draws into a frame full of `empty`, without a depth buffer.

@@ -15,7 +15,6 @@ use mode13h::render::Renderer;
 use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h::vga::Vga;
-use mode13h_lab::cost::Study;
 
 use crate::failure::Failure;
 use crate::output;
@@ -25,21 +24,6 @@ const COUNTED: &str = "*draw_counted*";
 
 /// Pattern for the function before which callgrind writes its counts.
 const DONE: &str = "*shading_is_done*";
-
-/// Instructions per frame, by shading.
-pub(super) struct Counts {
-    /// The kernel that ran, by the name that forces it.
-    pub(super) kernel: String,
-    of: BTreeMap<Shading, u64>,
-}
-
-impl Counts {
-    pub(super) fn write_into(&self, study: &mut Study) {
-        for row in &mut study.shadings {
-            row.instructions = self.of.get(&row.shading).copied();
-        }
-    }
-}
 
 /// Draws all frames with each shading, for callgrind to count, and prints which kernel drew them.
 pub(super) fn draw(frames: &[Scene], shadings: &[Shading], renderer: &dyn Fn() -> Renderer) -> Result<(), Failure> {
@@ -73,8 +57,9 @@ fn shading_is_done(shading: &Shading) {
     black_box(shading);
 }
 
-/// Counts the instructions of every shading by running this program again with its own arguments.
-pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failure> {
+/// Counts the instructions of every shading by running this program again with its own arguments. Returns the kernel
+/// that ran, by the name that forces it, and the instructions per frame.
+pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<(String, BTreeMap<Shading, u64>), Failure> {
     let directory = tempfile::Builder::new().prefix("mode13h-").tempdir()?;
     let program = env::current_exe()?;
     let out = Command::new("valgrind")
@@ -103,7 +88,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<Counts, Failu
             .ok_or_else(|| Failure::work("valgrind counted nothing: has the program been stripped of its symbols?"))?;
         of.insert(*shading, all / frames.max(1) as u64);
     }
-    Ok(Counts { kernel: String::from_utf8_lossy(&out.stdout).trim().to_string(), of })
+    Ok((String::from_utf8_lossy(&out.stdout).trim().to_string(), of))
 }
 
 /// The total instructions in a callgrind file, if it has any.

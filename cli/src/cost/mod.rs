@@ -105,16 +105,12 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if *counted {
         return instructions::draw(&frames, &shadings, &|| drawing.renderer(kernel));
     }
-    let directory = match (out, json) {
-        (Some(directory), _) => Some(directory.clone()),
-        (None, true) => None,
-        (None, false) => Some(PathBuf::from(format!("cost-{name}"))),
-    };
+    let directory = out.clone().or_else(|| (!json).then(|| PathBuf::from(format!("cost-{name}"))));
     // Before much time is spent.
     directory.as_deref().map_or(Ok(()), |directory| files::check(directory, out.is_some(), *force))?;
     let counts = if *instructions { Some(instructions::count(&shadings, frames.len())?) } else { None };
-    if let Some(counts) = &counts {
-        kernel = counts.kernel.parse::<Kernel>().map_err(Failure::words)?;
+    if let Some((counted, _)) = &counts {
+        kernel = counted.parse::<Kernel>().map_err(Failure::words)?;
     }
 
     let renderer = || drawing.renderer(kernel);
@@ -129,12 +125,13 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     };
     let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
     output::remark(format_args!("comparing {compared} with the reference, then timing for {times}"));
-    let progress = Progress::new();
+    let bar = output::bar(1000, "{bar:40} {percent}% {msg}");
+    let progress = Progress { bar, step: Mutex::new(None), begun: Instant::now() };
     let measured = cost::measure(&subject, &settings, &|step, share| progress.show(step, share));
     progress.bar.finish_and_clear();
     let (mut study, samples) = measured?;
-    if let Some(counts) = &counts {
-        counts.write_into(&mut study);
+    if let Some((_, counts)) = &counts {
+        study.shadings.iter_mut().for_each(|row| row.instructions = counts.get(&row.shading).copied());
     }
     let warnings = cost::warnings(&study);
     for warning in &warnings {
@@ -190,11 +187,6 @@ struct Progress {
 }
 
 impl Progress {
-    fn new() -> Progress {
-        let bar = output::bar(1000, "{bar:40} {percent}% {msg}");
-        Progress { bar, step: Mutex::new(None), begun: Instant::now() }
-    }
-
     fn show(&self, step: Step, share: f64) {
         let mut last = self.step.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         if *last != Some(step) {

@@ -130,7 +130,7 @@ pub(crate) fn help_on_keys(width: usize) -> String {
 #[derive(Args, Clone)]
 pub(crate) struct Options {
     #[arg(default_value = "torus", value_name = "INPUT", help = input::HELP, long_help = long_help_on_inputs())]
-    inputs: Vec<OsString>,
+    pub(crate) inputs: Vec<OsString>,
     /// Show INPUT in the terminal instead of a window
     ///
     /// The terminal must support images, as xterm, foot, kitty and others do, even over ssh. Arrows turn, + and - zoom, Space
@@ -171,13 +171,6 @@ pub(crate) struct Options {
     drawing: Drawing,
     #[command(flatten)]
     shading: ShadingOptions,
-}
-
-impl Options {
-    /// The inputs after the first one.
-    pub(crate) fn more_inputs(&self) -> &[OsString] {
-        self.inputs.get(1..).unwrap_or_default()
-    }
 }
 
 /// Seconds for which the demo says where a picture was saved.

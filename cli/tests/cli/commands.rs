@@ -681,8 +681,7 @@ fn f4_what_is_of_another_kind_is_not_overwritten() {
     }
     // A study replaces an earlier one.
     for _ in 0..2 {
-        let output = folder.run(&format!("{cost} study"));
-        assert!(output.status.success(), "{output:?}");
+        folder.said(&format!("{cost} study"));
     }
     tried.add(1);
 }
@@ -1033,9 +1032,7 @@ fn a_plan_with_times_has_a_price_for_each_effect() {
 fn with_no_display_one_frame_is_saved() {
     let folder = Folder::new();
     for (number, words) in [(1, ""), (2, "cube"), (3, "demo cube")] {
-        let output = folder.run(words);
-        assert_eq!(output.status.code(), Some(0), "{output:?}");
-        let said = String::from_utf8(output.stderr).expect("text");
+        let said = folder.said(words);
         let name = format!("mode13h-{number:04}.png");
         assert!(said.starts_with("mode13h: no display") && said.contains(&name), "{said}");
         assert_eq!(said.lines().count(), 1, "{said}");
@@ -1189,8 +1186,7 @@ fn a_model_with_colours_is_shown_in_them() {
     assert!(green(&picture("--arithmetic fixed")) > 0.05);
     // The window uses the same palette: without a display it saves its first picture, framed for the whole turn as in a
     // series.
-    let output = folder.run(house);
-    assert!(output.status.success(), "{output:?}");
+    folder.said(house);
     folder.succeed(&format!("render {house} -o row%d.png --frames 2 --turn 360"));
     assert_eq!(folder.png("mode13h-0001.png"), folder.png("row0.png"));
 
@@ -1508,19 +1504,15 @@ fn explain_names_material_and_line() {
     assert_eq!((&json["faces"][0]["line"], &json["faces"][0]["material"]), (&Value::Null, &Value::Null));
 }
 
-/// A row is shown in characters, as JSON and as a chart.
 #[test]
 fn a_pixel_is_explained_alike_by_a_time_and_by_the_error_that_fits() {
     let folder = Folder::new();
-    let explained = |limit: &str| {
-        let output = folder.run(&format!("explain torus --pixel 160,60 --json {limit}"));
-        assert!(output.status.success(), "{limit}");
-        String::from_utf8(output.stdout).expect("text")
-    };
+    let explained = |limit: &str| folder.json(&format!("explain torus --pixel 160,60 --json {limit}"));
     // The smallest error, half a shade, fits.
     assert_eq!(explained("--max-time 100000"), explained("--max-error 0.5"));
 }
 
+/// A row is shown in characters, as JSON and as a chart.
 #[test]
 fn explain_draws_a_row() {
     let folder = Folder::new();

@@ -191,7 +191,7 @@ impl Referee<'_> {
 
     fn look(&self, way: &Configuration<'_>, scene: &Scene, probe: &mut Probe) -> Result<Shown, CostError> {
         *probe.renderer() = way.apply((self.base)());
-        probe.dither(way.dither);
+        probe.dither = way.dither;
         Ok(probe.look(scene, Screen::MODE_13H)?)
     }
 
@@ -323,7 +323,7 @@ impl Shifts<'_> {
 pub(super) fn against(
     standard: Standard,
     frames: &[Scene],
-    ways: &[&Configuration<'_>],
+    ways: &[Configuration<'_>],
     base: &dyn Fn() -> Renderer,
 ) -> Result<Vec<Against>, CostError> {
     let mut all = vec![Against::default(); ways.len()];

@@ -18,7 +18,7 @@ use super::configuration::{Configuration, Kind};
 use super::statistics::Ratio;
 use mode13h::plan::Effect;
 use mode13h::plan::FaceShading;
-use mode13h::render::{RenderError, Renderer, Shares};
+use mode13h::render::{RenderError, Renderer};
 use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
@@ -97,14 +97,6 @@ pub(super) struct Work {
     pub(super) shares: [u64; FaceShading::ALL.len()],
 }
 
-impl Work {
-    fn add_shares(&mut self, shares: &Shares) {
-        for (count, shading) in self.shares.iter_mut().zip(FaceShading::ALL) {
-            *count += shares[shading];
-        }
-    }
-}
-
 /// One configuration, ready to draw.
 struct Candidate<'a> {
     renderer: Renderer,
@@ -134,7 +126,9 @@ impl Candidate<'_> {
             debug_assert!(stats.redrawn, "every frame is drawn");
             self.work.triangles += stats.drawn;
             self.work.pixels += u64::from(stats.raster.pixels);
-            self.work.add_shares(&stats.shares);
+            for (count, shading) in self.work.shares.iter_mut().zip(FaceShading::ALL) {
+                *count += stats.shares[shading];
+            }
         }
         Ok(())
     }
@@ -285,14 +279,9 @@ mod tests {
             Configuration::budget(4.0),
         ];
         let ways: Vec<(&Configuration<'_>, &[Scene])> = ways.iter().map(|way| (way, &frames[..])).collect();
-        let Ok(Outcome { samples, work }) = run_interleaved(
-            &ways,
-            &Renderer::new,
-            &Spent { clock: Clock::WALL, seconds: 0.001, at_most: false, seed: 1 },
-            &|_| {},
-        ) else {
-            unreachable!("a scene that can be drawn")
-        };
+        let spent = Spent { clock: Clock::WALL, seconds: 0.001, at_most: false, seed: 1 };
+        let outcome = run_interleaved(&ways, &Renderer::new, &spent, &|_| {});
+        let Outcome { samples, work } = outcome.expect("a scene that can be drawn");
         let rounds = samples.rounds();
         assert!(rounds >= 7, "{rounds}");
         for round in samples.list.chunk_by(|a, b| a.round == b.round) {

@@ -142,11 +142,8 @@ pub fn measure(
     let rows = Rows { ways: &ways, times, findings, outcome: &outcome, seed: *seed };
     let mut of_shadings = rows.shadings(&splits, frames.len());
     let budget = rows.budgets();
-    let by_time: Vec<(f64, &Results)> = budget
-        .iter()
-        .map(|row| row.per_frame.median)
-        .zip(rows.of_budgets().map(|(place, _)| &rows.findings[place]))
-        .collect();
+    let by_time: Vec<(f64, &Results)> =
+        rows.of_budgets().map(|(place, _)| (quartiles(&rows.times[place]).median, &rows.findings[place])).collect();
     let times = timed_rows(frames, renderer, &by_time, &spent(0.25), &|share| progress(Step::Goals, share))?;
     of_shadings.retain(|row| shadings.contains(&row.shading));
     let study = Study {
@@ -249,7 +246,7 @@ impl Rows<'_> {
                 instructions: None,
                 error_gouraud: findings.gouraud.errors(),
                 error_lit: findings.lit.errors(),
-                error_palette: findings.entries.error(),
+                error_palette: findings.entries.most,
                 cover_errors: findings.gouraud.cover_errors,
                 not_compared: findings.lit.share_not_compared(),
                 excess: findings.excess,

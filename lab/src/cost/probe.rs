@@ -40,8 +40,9 @@ use mode13h::settings::{Accuracy, Shading};
 pub struct Probe {
     renderer: Renderer,
     numbered: Numbered,
-    /// Dither, if it is judged; shades are then shown on a coarse ramp.
-    dither: Option<Option<DitherPattern>>,
+    /// Dither or none, if it is judged: shades are then shown on a ramp of 32 entries, 8.2 shades apart; with `None`,
+    /// on one of 256.
+    pub(super) dither: Option<Option<DitherPattern>>,
 }
 
 /// Entries of the ramp that dither is judged on.
@@ -57,12 +58,6 @@ impl Probe {
     /// The renderer, to change its settings.
     pub fn renderer(&mut self) -> &mut Renderer {
         &mut self.renderer
-    }
-
-    /// Sets dither or no dither. Either way shades are then shown on a ramp of 32 entries, 8.2 shades apart; with
-    /// `None`, on one of 256.
-    pub(super) fn dither(&mut self, dither: Option<Option<DitherPattern>>) {
-        self.dither = dither;
     }
 
     /// Finds out which pixels the renderer shows of a scene.

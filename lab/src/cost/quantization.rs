@@ -20,7 +20,8 @@ use mode13h::scene::Scene;
 /// Fog, dither and translucent objects are left out.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Entries {
-    most: f64,
+    /// The largest error among them, in shades.
+    pub(super) most: f64,
     /// Colours looked up for objects on three channels.
     colors: BTreeSet<[u8; 3]>,
     /// Object, surface and shade of the textured pixels seen.
@@ -65,11 +66,6 @@ impl Entries {
 
     pub(super) fn add(&mut self, other: Self) {
         self.most = self.most.max(other.most);
-    }
-
-    /// The largest error among them, in shades.
-    pub(super) fn error(&self) -> f64 {
-        self.most
     }
 }
 

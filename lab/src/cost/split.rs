@@ -144,15 +144,8 @@ mod tests {
         let frames = [Scene::showing(shapes::sphere(24, 12))];
         let ways = [Configuration::shading(Shading::Gouraud88), Configuration::shading(Shading::Phong)];
         let ways: Vec<&Configuration<'_>> = ways.iter().collect();
-        let Ok(split) = split(
-            &ways,
-            &frames,
-            &Renderer::new,
-            &Spent { clock: Clock::WALL, seconds: 0.3, at_most: false, seed: 1 },
-            &|_| {},
-        ) else {
-            unreachable!("a scene that can be drawn")
-        };
+        let spent = Spent { clock: Clock::WALL, seconds: 0.3, at_most: false, seed: 1 };
+        let split = split(&ways, &frames, &Renderer::new, &spent, &|_| {}).expect("a scene that can be drawn");
         assert_eq!(split.len(), 2);
         for Split { plan, vertices, spans, setup, scan_out } in &split {
             assert!([plan, vertices, scan_out].iter().all(|time| **time > 0.0), "{split:?}");

@@ -130,7 +130,7 @@ fn depth_of(vertices: &[Vertex; 3]) -> u64 {
 
 /// Decides for each face that covers the pixel whether it is visible under the given hidden-surface method, and moves
 /// translucent ones to the end, far to near.
-fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
+fn decide_fates(met: &mut [Met], way: HiddenSurfaces, chosen: bool) {
     let tests_depth = matches!(way, HiddenSurfaces::DepthBuffer | HiddenSurfaces::ScanLine);
     let opaque = || (0..met.len()).filter(|&i| met[i].fate == Fate::Seen);
     let seen = match way {
@@ -150,9 +150,6 @@ fn decide_fates(met: &mut Vec<Met>, way: HiddenSurfaces, chosen: bool) {
             other => other,
         };
     }
-    let (mut opaque, mut through): (Vec<Met>, Vec<Met>) = met.drain(..).partition(|met| met.fate != Fate::SeenThrough);
     // Far to near, which is the renderer's drawing order.
-    through.sort_by_key(|met| depth_of(&met.vertices));
-    opaque.append(&mut through);
-    *met = opaque;
+    met.sort_by_key(|met| (met.fate == Fate::SeenThrough).then(|| depth_of(&met.vertices)));
 }

@@ -1,6 +1,6 @@
 //! The right side of a picture: the engine's own calls and nothing else.
 
-use super::face::{Face, Segment};
+use super::face::{Corner, Face, Segment};
 use super::panel::Panel;
 use crate::museum::polygon::{self, TableRow};
 use mode13h::raster::{Frame, Interpolation, Raster, Vertex};
@@ -24,23 +24,27 @@ fn add(panel: &mut Panel, mut draw: impl FnMut(Frame<'_>, u8)) {
         }
         bytes
     });
-    panel.write_where_equal(&a, &b);
+    for (at, (byte, other)) in a.iter().zip(&b).enumerate() {
+        if byte == other {
+            panel.write((at % width) as i32, (at / width) as i32, *byte);
+        }
+    }
 }
 
-/// Draws these triangles with [`Raster::triangle`], one after another, each counted separately; with a depth buffer,
-/// all into one frame.
-fn draw(size: (usize, usize), triangles: &[Triangle], depth_tested: bool) -> Panel {
-    let mut panel = Panel::new(size);
+/// Draws faces with [`Raster::triangle`], one after another, each counted separately; with a depth buffer, all into one
+/// frame.
+pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: bool) -> Panel {
+    let (mut panel, triangles) = (Panel::new(size), triangles(faces));
     if depth_tested {
         let mut depths: Vec<u32> = Vec::new();
         add(&mut panel, |frame, _| {
             let mut raster = Raster::new(frame).with_cleared_depth(&mut depths);
-            for (vertices, interpolation) in triangles {
+            for (vertices, interpolation) in &triangles {
                 raster.triangle(vertices, *interpolation);
             }
         });
     } else {
-        for (vertices, interpolation) in triangles {
+        for (vertices, interpolation) in &triangles {
             add(&mut panel, |frame, _| {
                 Raster::new(frame).triangle(vertices, *interpolation);
             });
@@ -77,14 +81,9 @@ pub(super) fn draw_by_table(size: (usize, usize), polygons: &[&[Vertex]]) -> Pan
     panel
 }
 
-/// Draws faces as [`draw`] draws triangles.
-pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: bool) -> Panel {
-    draw(size, &triangles(faces), depth_tested)
-}
-
 /// Turns faces into triangles for the raster.
 pub(super) fn triangles(faces: &[Face]) -> Vec<Triangle> {
-    faces.iter().map(Face::for_raster).collect()
+    faces.iter().map(|face| (face.corners.map(Corner::vertex), face.interpolation)).collect()
 }
 
 /// Draws a scene with [`Renderer::draw_frame`] on square pixels; also returns the triangles that it passes to the

@@ -63,11 +63,6 @@ pub(super) const fn flat(corners: [Corner; 3], byte: u8) -> Face {
 }
 
 impl Face {
-    /// The raster's input.
-    pub(super) fn for_raster(&self) -> ([Vertex; 3], Interpolation) {
-        (self.corners.map(Corner::vertex), self.interpolation)
-    }
-
     /// Its three edges.
     pub(super) fn edges(&self) -> [Segment; 3] {
         let [a, b, c] = self.corners.map(|corner| (corner.x, corner.y));

@@ -112,16 +112,6 @@ impl Panel {
         }
     }
 
-    /// Takes the pixels of a frame of the same size, drawn once over `empty` and once over anything else: a pixel was
-    /// drawn if it is the same in both.
-    pub(super) fn write_where_equal(&mut self, a: &[u8], b: &[u8]) {
-        for (at, (byte, other)) in a.iter().zip(b).enumerate() {
-            if byte == other {
-                self.write((at % self.width) as i32, (at / self.width) as i32, *byte);
-            }
-        }
-    }
-
     /// Marks what differs from `reference`, which has the same size.
     pub(super) fn mark_against(&mut self, reference: &Self, measure: Measure) {
         for (at, mark) in self.marks.iter_mut().enumerate() {

@@ -23,7 +23,8 @@ fn area(a: Point, b: Point, c: Point) -> i64 {
 /// One of the triangles that a face is drawn in.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    points: [Point; 3],
+    /// Its corners in 1/256 pixel.
+    pub(super) points: [Point; 3],
     pub(super) corners: [Kept; 3],
 }
 
@@ -48,11 +49,6 @@ impl Rounded {
 }
 
 impl Part {
-    /// Its corners in 1/256 pixel.
-    pub(super) fn points(&self) -> [Point; 3] {
-        self.points
-    }
-
     /// The weights of its corners at the centre of a pixel, which add up to 1; `None` if the pixel is not covered, that
     /// is, if the centre is neither inside nor on a top or left edge.
     pub(super) fn weights(&self, x: i64, y: i64) -> Option<[f64; 3]> {

@@ -208,10 +208,7 @@ impl Figures {
 
 /// Change of the errors from one frame to the next, which the eye sees as crawling.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
-pub struct Swim {
-    changes: u64,
-    squares: f64,
-}
+pub struct Swim(Figures);
 
 impl Swim {
     /// Adds the change from one frame to the next at every pixel that was compared in both. Frames of different sizes
@@ -222,24 +219,20 @@ impl Swim {
         }
         for (before, now) in before.off.iter().zip(&now.off) {
             if let (Some(before), Some(now)) = (before, now) {
-                let change = greatest([0, 1, 2].map(|i| now[i] - before[i]));
-                self.changes += 1;
-                self.squares += change * change;
+                self.0.count(greatest([0, 1, 2].map(|i| now[i] - before[i])));
             }
         }
     }
 
     /// Adds those of other frames.
     pub fn join(&mut self, other: &Self) {
-        self.changes += other.changes;
-        self.squares += other.squares;
+        self.0.add(&other.0);
     }
 
     /// The root mean square of the changes, in shades; 0 if there are none.
     #[must_use]
     pub fn rms(&self) -> f64 {
-        // Pixels: below 2⁵³.
-        if self.changes == 0 { 0.0 } else { libm::sqrt(self.squares / self.changes as f64) }
+        self.0.rms()
     }
 }
 

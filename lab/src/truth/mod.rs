@@ -330,7 +330,7 @@ impl<'a> Truth<'a> {
     #[must_use]
     pub fn rounded_triangles(&self, face: Face) -> Vec<[[i64; 2]; 3]> {
         match self.drawn(face) {
-            Some(rounded) => rounded.parts.iter().map(cover::Part::points).collect(),
+            Some(rounded) => rounded.parts.iter().map(|part| part.points).collect(),
             None => Vec::new(),
         }
     }
@@ -361,7 +361,7 @@ impl<'a> Truth<'a> {
     fn rounded(&self, standard: Standard, face: Face, seen: &mut impl FnMut(Hit, i64, i64)) {
         let Some(Rounded { parts, turned }) = self.drawn(face) else { return };
         for part in parts {
-            let in_pixels = part.points().map(|point| point.map(|c| c as f64 / 256.0));
+            let in_pixels = part.points.map(|point| point.map(|c| c as f64 / 256.0));
             self.pixels_about(&in_pixels, |x, y| {
                 if let Some(hit) = part_hit(standard, (face, turned), &part, x, y) {
                     seen(hit, x, y);
@@ -398,9 +398,7 @@ impl<'a> Truth<'a> {
 
     /// The hit on a face whose corners are already computed.
     fn hit(eye: &Eye, face: Face, (body, corners): (&Body<'a>, &[Corner; 3]), at: [f64; 2]) -> Option<Hit> {
-        let met = ray::meet(eye, corners, at)?;
-        let hit = Hit { face, turned: met.turned, weights: met.on_face, inverse_w: 1.0 / met.w };
-        body.shows(face.triangle, met.turned).then_some(hit)
+        ray::meet(eye, face, corners, at).filter(|hit| body.shows(face.triangle, hit.turned))
     }
 
     /// Calls `pixel` for all pixels of the frame within the bounding box of the points, and a few more.

@@ -9,23 +9,14 @@ use super::body::Corner;
 use super::clip::{clip, fan};
 use super::eye::Eye;
 use super::vector::{Vector, cross, dot, weighted};
+use super::{Face, Hit};
 
-/// Intersection of a ray and a face.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
-    /// Weights of the three corners there, on the face in space; they sum to 1.
-    pub(super) on_face: [f64; 3],
-    pub(super) w: f64,
-    /// True if the eye sees the face's back.
-    pub(super) turned: bool,
-}
-
-/// Finds the point where the ray through (`x`, `y`), in pixels from the frame's upper left corner, hits a triangle;
-/// `None` if it misses, or hits nearer than the near plane.
+/// Finds the point where the ray through (`x`, `y`), in pixels from the frame's upper left corner, hits a face with
+/// these corners; the weights are those on the face in space. `None` if it misses, or hits nearer than the near plane.
 ///
 /// Two faces that share an edge compute the same value for it, with opposite signs. Where it is 0, the ray belongs to
 /// the face whose left or top edge it is, so always to exactly one.
-pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Met> {
+pub(super) fn meet(eye: &Eye, face: Face, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Option<Hit> {
     let [a, b, c] = triangle.each_ref().map(|corner| corner.seen);
     let p = [x - eye.centre[0], y - eye.centre[1], 1.0];
     let whole = volume(triangle);
@@ -43,7 +34,7 @@ pub(super) fn meet(eye: &Eye, triangle: &[Corner; 3], [x, y]: [f64; 2]) -> Optio
     if !(w >= eye.near && w.is_finite()) {
         return None;
     }
-    Some(Met { on_face: sides.map(|side| side / sum), w, turned: whole > 0.0 })
+    Some(Hit { face, turned: whole > 0.0, weights: sides.map(|side| side / sum), inverse_w: 1.0 / w })
 }
 
 /// Six times the volume of the corners and the eye; positive if the eye sees the triangle's back.

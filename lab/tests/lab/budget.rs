@@ -26,11 +26,6 @@ fn look(renderer: Renderer, scene: &Scene) -> Shown {
     Probe::new(renderer).look(scene, SCREEN).expect("a legal scene")
 }
 
-fn draw(renderer: &mut Renderer, scene: &Scene, vga: &mut Vga) -> Vec<u8> {
-    renderer.draw(scene, vga).expect("a legal scene");
-    vga.pixels().to_vec()
-}
-
 /// Checks that no pixel exceeds the budget, apart from what vertex rounding explains. Returns the greatest error as a
 /// ratio to its budget.
 fn check(tried: &mut Tried, name: &str, scene: &Scene, budgets: &[f32]) -> f64 {
@@ -312,7 +307,7 @@ fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
             renderer.settings.accuracy = Some(pace.accuracy());
             let stats = renderer.draw(scene, &mut vga).expect("a legal scene");
             assert_eq!(stats.max_error, Some(error));
-            assert!(vga.pixels() == draw(&mut within(error), scene, &mut Vga::new()), "frame {frame}");
+            assert!(vga.pixels() == scenes::frame_by(&mut within(error), scene).0, "frame {frame}");
             pace.report(&stats, Duration::from_micros(cost(error)));
             errors.push((error, fits));
         }
@@ -336,7 +331,7 @@ fn a_pace_draws_the_frames_of_the_errors_that_it_chooses() {
         pace.report(&stats, Duration::from_millis(1));
     }
     assert_eq!(drawn, 6, "once within each error");
-    assert!(vga.pixels() == draw(&mut within(0.5), &scene, &mut Vga::new()));
+    assert!(vga.pixels() == scenes::frame_by(&mut within(0.5), &scene).0);
 }
 
 /// An error that no renderer accepts is rejected when a frame is drawn, and nothing panics before that.

@@ -672,9 +672,7 @@ impl Written {
 
     /// Shuffled, so that of two faces at the same depth either may come first.
     fn load(mut self, random: &mut Random) -> mode13h_assets::model_file::Loaded {
-        for i in (1..self.faces.len()).rev() {
-            self.faces.swap(i, random.within(0, i as i64) as usize);
-        }
+        random.shuffle(&mut self.faces);
         let mut text = String::new();
         self.positions.iter().for_each(|p| text += &format!("v {} {} {}\n", p.x, p.y, p.z));
         self.faces.iter().for_each(|[a, b, c]| text += &format!("f {a} {b} {c}\n"));

@@ -44,7 +44,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
         };
         let mut renderer = Renderer::new();
         renderer.settings.accuracy = Some(random.one_of(&shadings).into());
-        let judged = judged(&mut renderer, &lit(scene(mesh)), SCREEN);
+        let (judged, stats) = judged(&mut renderer, &lit(scene(mesh)), SCREEN);
         assert!(judged.counts.iter().all(|&times| times <= 1), "parts of {corners:?} overlap");
         let shades = judged.triangles.iter().flat_map(|(vertices, _)| vertices.map(|v| f64::from(v.shade().to_bits())));
         let (low, high) = intensities.iter().fold((f64::MAX, 0.0), |(low, high), &i| (i.min(low), i.max(high)));
@@ -55,7 +55,7 @@ pub(crate) fn faces_up_to_the_greatest_number(mut tried: Tried) {
         }
         seen += u64::from(judged.counts.contains(&1));
         covered += judged.counts.iter().map(|&times| u64::from(times)).sum::<u64>();
-        clipped += judged.stats.clipped;
+        clipped += stats.clipped;
     }
     for (measure, count) in [("faces in sight", seen), ("clipped", clipped), ("pixels", covered)] {
         tried.worst(measure, count as f64);
@@ -92,7 +92,7 @@ pub(crate) fn floors_up_to_the_greatest_number(mut tried: Tried) {
             let [c, d] = [at(column, row + 1), at(column + 1, row + 1)];
             triangles.extend(random.one_of(&[[[a, c, b], [b, c, d]], [[a, c, d], [a, d, b]]]));
         }
-        let judged =
+        let (judged, _) =
             judged(&mut Renderer::new(), &lit(scene(Mesh::new(positions, triangles).expect("a mesh"))), SCREEN);
         let is_hit = |x: f64, y_pixel: f64| {
             let ray = [(x - f64::from(WIDTH) / 2.0) / fx, -(y_pixel - f64::from(HEIGHT) / 2.0) / fy];

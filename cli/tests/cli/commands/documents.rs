@@ -50,19 +50,8 @@ const SOURCES: &str = include_str!("../../../../docs/sources.md");
 const SCENES: &str = include_str!("../../../../assets/scenes/README.md");
 
 /// Options of other programs: cargo, the scripts in `.ci`, the benchmark against peers.
-const OTHERS: [&str; 11] = [
-    "--bench",
-    "--ignored",
-    "--no-fail-fast",
-    "--path",
-    "--profile",
-    "--rabbit",
-    "--release",
-    "--renew",
-    "--table",
-    "--test",
-    "--test-threads",
-];
+const OTHERS: &str =
+    "--bench --ignored --no-fail-fast --path --profile --rabbit --release --renew --table --test --test-threads";
 
 fn help(command: &str) -> String {
     Folder::new().printed(&format!("{command} --help"))
@@ -107,8 +96,7 @@ fn all_that_the_source_texts_describe_is_seen_by_a_command() {
         let command = row.split('`').nth(1).expect("a command");
         // This one takes long, and has tests of its own.
         if command != "verify" {
-            let output = Folder::new().run(command);
-            assert!(output.status.success(), "{row}: {output:?}");
+            Folder::new().said(command);
         }
         tried.add(1);
     }
@@ -122,7 +110,7 @@ fn documents_name_options_that_the_program_has() {
     let every: BTreeSet<&str> = commands.iter().flat_map(|(_, options)| options).map(String::as_str).collect();
     for (document, text) in DOCUMENTS {
         for option in options(text) {
-            let known = every.contains(option) || OTHERS.contains(&option);
+            let known = every.contains(option) || OTHERS.split(' ').any(|other| other == option);
             assert!(known, "{document}: {option} is no option of the program");
             tried.add(1);
         }
@@ -301,30 +289,14 @@ fn documents_name_files_that_are_there() {
             }
             tried.add(1);
         }
-        let folders = [
-            "assets/",
-            ".ci/",
-            "tests/",
-            "src/",
-            "asm/",
-            "examples/",
-            "benches/",
-            "fuzz/",
-            "palettes/",
-            "docs/",
-            "lab/",
-            "cli/",
-            "capi/",
-            "conformance/",
-            "machines/",
-            "web/",
-        ];
+        let folders =
+            "assets .ci tests src asm examples benches fuzz palettes docs lab cli capi conformance machines web";
         for path in quoted(text).filter_map(|quote| quote.split(' ').next()) {
             // A line and a column may follow the path.
             let path = path.find(".rs:").map_or(path, |end| &path[..end + 3]);
             if path.contains("NAME") {
                 // Stands for any.
-            } else if folders.iter().any(|folder| path.starts_with(folder)) {
+            } else if path.split_once('/').is_some_and(|(first, _)| folders.split(' ').any(|folder| folder == first)) {
                 assert!(root.join(path).exists(), "{document}: there is no {path}");
                 tried.add(1);
             } else if path.ends_with(".rs") && path.contains('/') && !path.contains('*') {

@@ -26,32 +26,19 @@ use mode13h::scene::Scene;
 use mode13h::settings::Shading;
 use mode13h_conformance::Random;
 
-/// The scenes, and the shadings that draw them.
-struct Entrants {
-    scenes: Vec<Vec<Scene>>,
-    /// A shading, and the index of a scene.
-    list: Vec<(Shading, usize)>,
-}
-
-impl Entrants {
-    /// Every scene, with the shadings that the claims about it need.
-    fn new() -> Self {
-        use Shading::{
-            Flat, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudFloat, GouraudHyperbolic, Phong, PhongTable,
-        };
-        let mut entrants = Self { scenes: Vec::new(), list: Vec::new() };
-        let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, GouraudFloat, Phong, PhongTable];
-        entrants.add(scenes::torus(), &all);
-        for slices in SLICES {
-            entrants.add(scenes::sphere(slices, true), &[Flat, Gouraud88, Gouraud88Reseeded, Phong, PhongTable]);
-        }
-        entrants
-    }
-
-    fn add(&mut self, frames: Vec<Scene>, shadings: &[Shading]) {
-        self.list.extend(shadings.iter().map(|shading| (*shading, self.scenes.len())));
-        self.scenes.push(frames);
-    }
+/// The scenes, and each shading that the claims about a scene need, with the scene's index.
+fn entrants() -> (Vec<Vec<Scene>>, Vec<(Shading, usize)>) {
+    use Shading::{
+        Flat, Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudFloat, GouraudHyperbolic, Phong, PhongTable,
+    };
+    let all = [Gouraud88, Gouraud88Reseeded, Gouraud1616, GouraudHyperbolic, Flat, GouraudFloat, Phong, PhongTable];
+    let of_spheres = [Flat, Gouraud88, Gouraud88Reseeded, Phong, PhongTable];
+    let mut scenes = vec![scenes::torus()];
+    scenes.extend(SLICES.map(|slices| scenes::sphere(slices, true)));
+    let shadings = |scene: usize| if scene == TORUS { &all[..] } else { &of_spheres[..] };
+    let each = |scene: usize| shadings(scene).iter().map(move |shading| (*shading, scene));
+    let list = (0..scenes.len()).flat_map(each).collect();
+    (scenes, list)
 }
 
 /// Index of the torus among the scenes; the spheres follow it.
@@ -88,7 +75,7 @@ pub(super) fn claims(
     spent: &Spent,
     progress: &dyn Fn(f64),
 ) -> Result<Vec<Claim>, CostError> {
-    let Entrants { scenes, list } = Entrants::new();
+    let (scenes, list) = entrants();
     let ways: Vec<Configuration<'_>> = list.iter().map(|(shading, _)| Configuration::shading(*shading)).collect();
     let entrants: Vec<(&Configuration<'_>, &[Scene])> =
         ways.iter().zip(&list).map(|(way, (_, scene))| (way, scenes[*scene].as_slice())).collect();
@@ -101,15 +88,12 @@ pub(super) fn claims(
         spheres.push(sphere(slices, TORUS + 1 + number, &scenes, &times, base)?);
     }
     let floor = scenes::floor();
-    let (torus, default) = (&scenes[TORUS], Configuration::shading(Shading::Gouraud88Reseeded));
-    let (shortest, wide, float) = (
-        Configuration::shading(Shading::Gouraud88),
-        Configuration::shading(Shading::Gouraud1616),
-        Configuration::shading(Shading::GouraudFloat),
-    );
+    let torus = &scenes[TORUS];
     let everywhere: Vec<Scene> = torus.iter().chain(&floor).cloned().collect();
-    let fixed = against(Standard::Gouraud, &everywhere, &[&shortest, &default, &wide], base)?;
-    let float = against(Standard::GouraudPerspective, &everywhere, &[&float], base)?;
+    let fixed = [Shading::Gouraud88, Shading::Gouraud88Reseeded, Shading::Gouraud1616].map(Configuration::shading);
+    let fixed = against(Standard::Gouraud, &everywhere, &fixed, base)?;
+    let float = [Configuration::shading(Shading::GouraudFloat)];
+    let float = against(Standard::GouraudPerspective, &everywhere, &float, base)?;
     let linear = [Standard::Gouraud, Standard::GouraudPerspective];
     let figures = Figures {
         spheres,
@@ -133,10 +117,9 @@ fn sphere(
     base: &dyn Fn() -> Renderer,
 ) -> Result<Sphere, CostError> {
     let (matt, shiny) = (scenes::sphere(slices, false), &scenes[scene]);
-    let (linear, phong) = (Configuration::shading(Shading::Gouraud88Reseeded), Configuration::shading(Shading::Phong));
-    let rounded = Configuration::shading(Shading::Gouraud88Reseeded).with_vertex_bits(0);
-    let off = against(Standard::GouraudUnrounded, &matt, &[&linear, &rounded], base)?;
-    let model = against(Standard::Lit, shiny, &[&linear, &phong], base)?;
+    let linear = || Configuration::shading(Shading::Gouraud88Reseeded);
+    let off = against(Standard::GouraudUnrounded, &matt, &[linear(), linear().with_vertex_bits(0)], base)?;
+    let model = against(Standard::Lit, shiny, &[linear(), Configuration::shading(Shading::Phong)], base)?;
     let triangles = matt[0].objects()[0].mesh().triangles().len();
     let seen = (off[0].pixels() + off[0].cover_errors) as f64 / matt.len() as f64;
     Ok(Sphere {

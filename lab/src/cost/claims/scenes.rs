@@ -20,13 +20,10 @@ fn turned(mesh: Mesh, shiny: bool) -> Vec<Scene> {
     let mut scene = Scene::showing(mesh);
     // Framed by the bounding sphere, since the mesh turns about two axes.
     scene.camera = Camera::framing(Vec3::ZERO, scene.objects()[0].mesh().bounds().radius);
-    for object in scene.objects_mut() {
-        let materials = object.materials.iter_mut();
-        if shiny {
-            materials.for_each(|material| {
-                (material.ambient, material.diffuse) = (0.1, 0.6);
-                (material.specular, material.shininess) = (0.3, 20.0);
-            });
+    if shiny {
+        for material in &mut scene.objects_mut()[0].materials {
+            (material.ambient, material.diffuse) = (0.1, 0.6);
+            (material.specular, material.shininess) = (0.3, 20.0);
         }
     }
     let frame = |frame: u32| {

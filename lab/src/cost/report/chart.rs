@@ -32,13 +32,10 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 pub fn chart_svg(study: &Study) -> String {
     let mut text = String::new();
     let root = SVGBackend::with_string(&mut text, (860, 520)).into_drawing_area();
-    // Writing to a string cannot fail.
-    if draw(study, &root).and_then(|()| Ok(root.present()?)).is_err() {
-        drop(root);
-        return String::from("<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>");
-    }
+    let drawn = draw(study, &root).and_then(|()| Ok(root.present()?));
     drop(root);
-    text
+    // Writing to a string cannot fail.
+    if drawn.is_ok() { text } else { String::from("<svg xmlns=\"http://www.w3.org/2000/svg\"></svg>") }
 }
 
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -212,10 +209,7 @@ fn join_budgets(points: &mut Vec<Point>, pixel: impl Fn(&Point) -> (i32, i32)) {
 
 /// A range with room for all points, from tick to tick.
 pub(super) fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
-    let (mut low, mut high) = (f64::INFINITY, 0.0_f64);
-    for value in values {
-        (low, high) = (low.min(value), high.max(value));
-    }
+    let (low, high) = values.fold((f64::INFINITY, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
     if low > high { (0.1, 10.0) } else { (low / 1.4, high * 1.4) }
 }
 

@@ -4,18 +4,13 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use mode13h::export::{Picture, Png};
-use mode13h::palette::Palette;
-use mode13h::palette::Rgb;
+use mode13h::palette::{Palette, Rgb, builtin};
 
 use crate::cost::error_levels::{ALL as LEVELS, NOT_TAKEN, index_of};
 
 /// A frame of greys as a data URI; `None` unless it is 320 × 200.
 pub(super) fn frame(greys: &[u8]) -> Option<String> {
-    let mut grey = [Rgb::BLACK; 256];
-    for (color, level) in grey.iter_mut().zip(0..=255) {
-        *color = Rgb { r: level, g: level, b: level };
-    }
-    uri(greys, grey)
+    uri(greys, &builtin::GREY)
 }
 
 /// An error map in the colours of its levels, as a data URI.
@@ -25,12 +20,11 @@ pub(super) fn error_map(errors: &[f32]) -> Option<String> {
         *color = Rgb::from(level.color);
     }
     let bytes: Vec<u8> = errors.iter().map(|&error| index_of(error)).collect();
-    uri(&bytes, colors)
+    uri(&bytes, &Palette::from_colors(colors))
 }
 
-fn uri(pixels: &[u8], colors: [Rgb; 256]) -> Option<String> {
-    let palette = Palette::from_colors(colors);
-    let file = Png::default().encode(&Picture::mode_13h(pixels, &palette)).ok()?;
+fn uri(pixels: &[u8], palette: &Palette) -> Option<String> {
+    let file = Png::default().encode(&Picture::mode_13h(pixels, palette)).ok()?;
     Some(format!("data:image/png;base64,{}", STANDARD.encode(file)))
 }
 

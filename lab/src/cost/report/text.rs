@@ -11,7 +11,7 @@ pub fn text(study: &Study) -> String {
     let Study { input, host, kernel, frames, rounds, .. } = study;
     let mut parts = vec![
         format!("{}\n", summary(study).join("\n")),
-        wrapped(NAMES),
+        lines(NAMES, 100).join("\n") + "\n",
         format!(
             "{input}: {frames} frames, {rounds} rounds in shuffled order, kernel {kernel}\n{}; {}; {}\n",
             host.processor, host.compiler, host.flags
@@ -30,9 +30,4 @@ pub fn text(study: &Study) -> String {
     }
     parts.retain(|part| !part.is_empty());
     parts.join("\n")
-}
-
-/// Wraps text to at most 100 columns.
-fn wrapped(text: &str) -> String {
-    lines(text, 100).join("\n") + "\n"
 }

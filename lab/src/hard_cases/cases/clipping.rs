@@ -9,7 +9,7 @@ use crate::hard_cases::engine;
 use crate::hard_cases::face::gouraud;
 use crate::hard_cases::fault::light::View;
 use crate::hard_cases::fault::{cover, paint};
-use crate::hard_cases::panel::{Measure, Panel};
+use crate::hard_cases::panel::Measure;
 use crate::truth::vector::Vector;
 use mode13h::mesh::Mesh;
 use mode13h::scene::Scene;
@@ -65,29 +65,24 @@ fn floor(z: &[f64]) -> (Vec<Vector>, Vec<[usize; 3]>, Vec<f64>) {
     (positions, triangles, intensities)
 }
 
-fn on_the_floor(z: &[f64], wrong: impl Fn(&mut Panel, View, &[Vector], &[[usize; 3]], &[f64])) -> Comparison {
+/// A floor, of which the fault draws the triangles with three corners at distances that it keeps.
+fn on_the_floor(z: &[f64], keeps: impl Fn(f64) -> bool) -> Comparison {
     let size = (30, 26);
     let view = View { size, eye: [0.0, 0.3, 0.0], field_of_view: 80_f64.to_radians() };
     let (positions, triangles, intensities) = floor(z);
     let drawn = engine::draw_scene(size, &scene(lit(&positions, &intensities, &triangles), view));
-    let shades: Vec<f64> = intensities.iter().map(|intensity| intensity * 255.0).collect();
-    of_scene(drawn, CUT, |panel| wrong(panel, view, &positions, &triangles, &shades))
+    let is_kept = |triangle: &&[usize; 3]| triangle.iter().all(|i| keeps(view.w(positions[*i])));
+    of_scene(drawn, CUT, |panel| {
+        for triangle in triangles.iter().filter(is_kept) {
+            paint(panel, &[gouraud(triangle.map(|i| view.project(positions[i], intensities[i] * 255.0)))]);
+        }
+    })
 }
 
 pub(super) fn c1() -> Comparison {
-    on_the_floor(&[2.5, -9.0], |panel, view, positions, triangles, shades| {
-        for triangle in triangles {
-            paint(panel, &[gouraud(triangle.map(|i| view.project(positions[i], shades[i])))]);
-        }
-    })
+    on_the_floor(&[2.5, -9.0], |_| true)
 }
 
 pub(super) fn c2() -> Comparison {
-    on_the_floor(&[-NEAR + 0.1, -2.6, -4.2, -7.0, -12.0], |panel, view, positions, triangles, shades| {
-        for triangle in triangles {
-            if triangle.iter().all(|i| view.w(positions[*i]) >= NEAR) {
-                paint(panel, &[gouraud(triangle.map(|i| view.project(positions[i], shades[i])))]);
-            }
-        }
-    })
+    on_the_floor(&[-NEAR + 0.1, -2.6, -4.2, -7.0, -12.0], |w| w >= NEAR)
 }

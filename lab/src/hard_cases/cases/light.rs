@@ -6,8 +6,9 @@ use mode13h::glam::Vec3;
 use super::{EXACT, of_scene};
 use crate::hard_cases::Comparison;
 use crate::hard_cases::engine;
-use crate::hard_cases::face::without_diagonals;
-use crate::hard_cases::fault::light::{View, lit_mesh, unit};
+use crate::hard_cases::face::{gouraud, without_diagonals};
+use crate::hard_cases::fault::light::{View, unit};
+use crate::hard_cases::fault::{paint, side, wrapped};
 use crate::hard_cases::panel::Measure;
 use crate::truth::vector::{Vector, add, cross, dot, sub, wide};
 use mode13h::light::{Light, Material};
@@ -68,8 +69,15 @@ fn compare(lit: Lit) -> Comparison {
     }
     let drawn = engine::draw_scene(SIZE, &scene);
     let measure = Measure { counts_writes: false, ..LIT };
+    // The fault draws the faces turned toward the eye, or all.
     of_scene(drawn, measure, |panel| {
-        lit_mesh(panel, view, &lit.positions, &lit.triangles, lit.two_sided, &lit.shades);
+        for triangle in &lit.triangles {
+            let [a, b, c] = triangle.map(|i| view.project(lit.positions[i], lit.shades[i]));
+            // Counter-clockwise seen from outside, on a screen whose y runs down.
+            if lit.two_sided || side(a, b, (c.x, c.y)) < 0.0 {
+                paint(panel, &[gouraud([a, b, c])]);
+            }
+        }
     })
 }
 
@@ -143,14 +151,9 @@ fn ball(suns: Vec<Light>, shade: impl Fn(Vector) -> f64) -> Comparison {
     comparison
 }
 
-/// The low byte of a shade rounded to a whole number.
-fn in_8_bits(shade: f64) -> u8 {
-    (shade + 0.5).floor() as i64 as u8
-}
-
 pub(super) fn n4() -> Comparison {
     let towards = unit([-0.8, 0.7, 0.25]);
-    ball(vec![sun(towards)], |normal| f64::from(in_8_bits(dot(normal, towards) * 255.0)))
+    ball(vec![sun(towards)], |normal| f64::from(wrapped(dot(normal, towards) * 255.0)))
 }
 
 pub(super) fn n5() -> Comparison {
@@ -158,7 +161,7 @@ pub(super) fn n5() -> Comparison {
     let lamps = [[-1.0, 0.3, 0.8], [1.0, 0.3, 0.8]].map(unit);
     let suns = lamps.map(|lamp| sun(lamp).with_intensity(INTENSITY as f32)).to_vec();
     ball(suns, |normal| {
-        let bytes = lamps.map(|lamp| in_8_bits(dot(normal, lamp).max(0.0) * INTENSITY * 255.0));
+        let bytes = lamps.map(|lamp| wrapped(dot(normal, lamp).max(0.0) * INTENSITY * 255.0));
         f64::from(bytes.into_iter().fold(0_u8, u8::wrapping_add))
     })
 }

@@ -227,16 +227,11 @@ fn against_engine(
     wrong: impl FnOnce(&mut Panel),
 ) -> Comparison {
     let right = engine::draw_faces(size, faces, !measure.counts_writes);
-    let mut fault = Panel::new(size);
-    wrong(&mut fault);
-    fault.mark_against(&right, measure);
     Comparison {
-        fault,
-        right,
-        triangles: engine::triangles(faces),
         depth_tested: !measure.counts_writes,
         outline: edges(faces),
         palette: if measure.counts_writes { &builtin::GREY } else { &builtin::MATERIALS_4X64 },
+        ..of_scene((right, engine::triangles(faces)), measure, wrong)
     }
 }
 

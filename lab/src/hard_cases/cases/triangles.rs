@@ -163,7 +163,7 @@ pub(super) fn r13() -> Comparison {
     };
     let faces: Vec<Face> = (0..BLADES).flat_map(blade).collect();
     let mut comparison = against_engine((30, 28), &faces, EXACT, |panel| {
-        faces.iter().for_each(|face| paint(panel, &[gouraud(cover::whole_pixels(&face.corners))]));
+        faces.iter().for_each(|face| paint(panel, &[gouraud(face.corners.map(cover::on_whole_pixel))]));
     });
     comparison.outline = without_diagonals(&comparison.outline);
     comparison

@@ -125,12 +125,8 @@ pub(in crate::hard_cases) fn lines_from_the_corner(panel: &mut Panel, corners: &
     }
 }
 
-/// Corners rounded to whole pixels, which is what all five sources do.
-pub(in crate::hard_cases) fn whole_pixels(corners: &[Corner; 3]) -> [Corner; 3] {
-    corners.map(on_whole_pixel)
-}
-
-fn on_whole_pixel(corner: Corner) -> Corner {
+/// A corner rounded to whole pixels, which is what all five sources do.
+pub(in crate::hard_cases) fn on_whole_pixel(corner: Corner) -> Corner {
     Corner { x: (corner.x + 0.5).floor(), y: (corner.y + 0.5).floor(), ..corner }
 }
 

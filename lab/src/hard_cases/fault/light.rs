@@ -1,8 +1,6 @@
 //! Faults of light and of projection, with a view of their own.
 
-use super::paint;
-use crate::hard_cases::face::{Corner, gouraud};
-use crate::hard_cases::panel::Panel;
+use crate::hard_cases::face::Corner;
 use crate::truth::vector::{Vector, dot, sub};
 
 pub(in crate::hard_cases) fn unit(v: Vector) -> Vector {
@@ -32,23 +30,5 @@ impl View {
     /// Distance of a point in front of the eye.
     pub(in crate::hard_cases) fn w(&self, point: Vector) -> f64 {
         self.eye[2] - point[2]
-    }
-}
-
-/// Draws a mesh with these bytes at the vertices: only the faces turned toward the eye, or all if `two_sided`.
-pub(in crate::hard_cases) fn lit_mesh(
-    panel: &mut Panel,
-    view: View,
-    positions: &[Vector],
-    triangles: &[[usize; 3]],
-    two_sided: bool,
-    shades: &[f64],
-) {
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| view.project(positions[i], shades[i]));
-        // Counter-clockwise seen from outside, on a screen whose y runs down.
-        if two_sided || super::side(a, b, (c.x, c.y)) < 0.0 {
-            paint(panel, &[gouraud([a, b, c])]);
-        }
     }
 }

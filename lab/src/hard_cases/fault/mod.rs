@@ -14,7 +14,7 @@ use super::panel::Panel;
 use mode13h::raster::Interpolation;
 
 /// Twice the area of a → b → (x, y); positive if the point lies to the right of a → b on a screen whose y points down.
-fn side(a: Corner, b: Corner, (x, y): (f64, f64)) -> f64 {
+pub(super) fn side(a: Corner, b: Corner, (x, y): (f64, f64)) -> f64 {
     (b.x - a.x) * (y - a.y) - (b.y - a.y) * (x - a.x)
 }
 
@@ -24,7 +24,7 @@ fn centre(x: i32, y: i32) -> (f64, f64) {
 }
 
 /// A shade as a byte: rounded to the nearest, and **wrapped** outside 0 to 255.
-fn wrapped(shade: f64) -> u8 {
+pub(super) fn wrapped(shade: f64) -> u8 {
     // Below 2⁶³ in every case; the last cast keeps the low byte, which is the fault.
     (shade + 0.5).floor() as i64 as u8
 }

@@ -57,11 +57,7 @@ impl World {
         }
         if kept.is_err() {
             let as_it_was = vga.pixels() == before;
-            return if as_it_was {
-                Ok((before, vga.palette()))
-            } else {
-                Err("an error, and pixels changed".to_string())
-            };
+            return as_it_was.then(|| (before, vga.palette())).ok_or("an error, and pixels changed".to_string());
         }
         let differ = vga.pixels().iter().zip(other.pixels()).filter(|(a, b)| a != b).count();
         if differ > 0 {
@@ -142,9 +138,7 @@ fn run_all(mut tried: Tried) {
                 if tried.cases() > 0 {
                     cards.extend(unseen(&counts).repeat(COPIES_OF_UNSEEN));
                 }
-                for last in (1..cards.len()).rev() {
-                    cards.swap(last, random.within(0, last as i64) as usize);
-                }
+                random.shuffle(&mut cards);
             }
             cards.pop().expect("changes")
         };
