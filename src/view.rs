@@ -182,16 +182,18 @@ pub(crate) struct ObjectView {
     /// The transform of `exact` in f32; `None` if the object extends so far that f32 could overflow.
     fast: Option<(Mat3, Vec3)>,
     centre: (f32, f32),
-    near: f32,
+    /// The near plane's distance.
+    pub(crate) near: f32,
     /// The rotation alone, from object space to the world.
     turn: Matrix,
     /// The rotation from object space to eye space: right, up, towards the eye.
     to_eye: Matrix,
     /// The eye, in object space.
-    eye: Row,
+    pub(crate) eye: Row,
     position: Row,
     pivot: Row,
-    scale: f64,
+    /// The scale factor of the mesh.
+    pub(crate) scale: f64,
     size: (f64, f64),
 }
 
@@ -310,19 +312,9 @@ impl ObjectView {
         Some(Narrow { matrix, offset, centre: self.centre, near: self.near })
     }
 
-    /// The eye in object space.
-    pub(crate) fn eye(&self) -> [f64; 3] {
-        self.eye
-    }
-
     /// The world position of the object's pivot.
     pub(crate) fn position(&self) -> Vec3 {
         Vec3::from_array(self.position.map(|c| c as f32))
-    }
-
-    /// The scale factor of the mesh.
-    pub(crate) fn scale(&self) -> f64 {
-        self.scale
     }
 
     /// The matrix from object space to eye space, for directions: right, up, towards the eye.
@@ -417,11 +409,6 @@ impl ObjectView {
         // unit at distance 1.
         let [across, down, _] = self.exact.0.map(|row| libm::sqrt(dot(row, row)));
         distance / across.min(down)
-    }
-
-    /// The near plane's distance.
-    pub(crate) fn near(&self) -> f32 {
-        self.near
     }
 
     /// Returns whether a vertex is at least as far away as the near plane, by the test that clipping uses.

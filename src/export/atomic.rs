@@ -135,7 +135,7 @@ pub fn write_atomically(
     let mut file = AtomicFile::create(path.as_ref())?;
     match write(&mut file) {
         Ok(()) => file.commit(),
-        Err(error) => Err(file.failed(error)),
+        Err(error) => Err(ExportError::new(&file.path, ExportErrorKind::from_writing(error))),
     }
 }
 
@@ -218,11 +218,6 @@ impl AtomicFile {
         file.sync_all().map_err(fail_to_write)?;
         drop(file);
         temporary.rename(&target).map_err(fail)
-    }
-
-    /// Converts an error from writing into the file to the one to report.
-    fn failed(&self, error: io::Error) -> ExportError {
-        ExportError::new(&self.path, ExportErrorKind::from_writing(error))
     }
 }
 

@@ -5,7 +5,7 @@
 
 mod atomic;
 #[cfg(any(feature = "png", feature = "window"))]
-mod picture;
+pub(crate) mod picture;
 #[cfg(feature = "png")]
 mod png_file;
 #[cfg(feature = "png")]

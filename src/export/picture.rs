@@ -83,6 +83,11 @@ impl<'a> Picture<'a> {
     }
 }
 
+/// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
+pub(crate) fn source(at: usize, to: usize, from: usize) -> usize {
+    (2 * at + 1) * from / (2 * to)
+}
+
 /// The reason why a picture cannot be exported.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]

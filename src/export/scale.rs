@@ -4,6 +4,7 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
+use super::picture::source;
 use super::{MAX_SIDE, Picture, PictureError, PixelShape};
 
 /// The enlargement of an exported picture. Each pixel of the result is one pixel of the frame, never a mixture, so an
@@ -157,11 +158,6 @@ impl<'a> Scaled<'a> {
         // Both fit: the loop has ended.
         (x as u32, y as u32)
     }
-}
-
-/// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
-fn source(at: usize, to: usize, from: usize) -> usize {
-    (2 * at + 1) * from / (2 * to)
 }
 
 fn greatest_common_divisor(mut a: u64, mut b: u64) -> u64 {

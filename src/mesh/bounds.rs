@@ -23,22 +23,13 @@ impl Bounds {
     /// The bounds of the vertices that the triangles use. There is at least one triangle; indices are in range.
     pub(super) fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let used = || triangles.iter().flatten().map(|&i| positions[i as usize]);
-        let mut min = Vec3::MAX;
-        let mut max = Vec3::MIN;
-        for p in used() {
-            min = min.min(p);
-            max = max.max(p);
-        }
+        let (min, max) = used().fold((Vec3::MAX, Vec3::MIN), |(min, max), p| (min.min(p), max.max(p)));
         // In f64: min + max may exceed f32, and so may the radius.
         let middle = |a: f32, b: f32| ((f64::from(a) + f64::from(b)) / 2.0) as f32;
         let centre = Vec3::new(middle(min.x, max.x), middle(min.y, max.y), middle(min.z, max.z));
-        let mut square = 0.0_f64;
-        for p in used() {
-            let away = sub(widen(p), widen(centre));
-            square = square.max(dot(away, away));
-        }
+        let squares = used().map(|p| sub(widen(p), widen(centre))).map(|away| dot(away, away));
         // The root is monotonic, so only the greatest square needs one.
-        Self { min, max, centre, radius: round_up(libm::sqrt(square)) }
+        Self { min, max, centre, radius: round_up(libm::sqrt(squares.fold(0.0, f64::max))) }
     }
 }
 

@@ -9,13 +9,15 @@ use super::wide::dot;
 
 /// The derived properties of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Facts {
+pub(crate) struct Facts {
     /// The index of each vertex's surface.
     vertex_surfaces: Vec<u16>,
-    /// The longest edges in space and in texture coordinates.
-    longest_edges: (f32, f32),
-    steepest_texcoords: Vec<f64>,
-    is_faceted: bool,
+    /// The longest edge, in the mesh's own units, and the longest in texture coordinates.
+    pub(crate) longest_edges: (f32, f32),
+    /// For each surface, the greatest change of its texture coordinates over one unit of the mesh.
+    pub(crate) steepest_texcoords: Vec<f64>,
+    /// Whether every face has its own normal at all its vertices, so that a distant light is constant over each face.
+    pub(crate) is_faceted: bool,
 }
 
 impl Mesh {
@@ -40,22 +42,6 @@ impl Mesh {
     #[must_use]
     pub(crate) fn vertex_surfaces(&self) -> &[u16] {
         &self.facts.vertex_surfaces
-    }
-
-    /// The longest edge, in the mesh's own units, and the longest in texture coordinates.
-    pub(crate) fn longest_edges(&self) -> (f32, f32) {
-        self.facts.longest_edges
-    }
-
-    /// For each surface, the greatest change of its texture coordinates over one unit of the mesh.
-    pub(crate) fn steepest_texcoords(&self) -> &[f64] {
-        &self.facts.steepest_texcoords
-    }
-
-    /// Returns whether every face has its own normal at all its vertices, so that a distant light is constant over each
-    /// face.
-    pub(crate) fn is_faceted(&self) -> bool {
-        self.facts.is_faceted
     }
 }
 
@@ -179,11 +165,11 @@ mod tests {
             check(name, &mesh);
             mesh.flat();
             check(name, &mesh);
-            assert!(mesh.is_faceted(), "{name}");
+            assert!(mesh.facts.is_faceted, "{name}");
             let texcoords = (0..mesh.positions().len()).map(|i| Vec2::new(i as f32, 1.0)).collect();
             let mesh = mesh.with_texcoords(texcoords).expect("pairs");
             check(name, &mesh);
-            assert!(mesh.longest_edges().1 >= 1.0, "{name}");
+            assert!(mesh.facts.longest_edges.1 >= 1.0, "{name}");
             let (positions, normals) = (mesh.positions().to_vec(), mesh.normals().to_vec());
             check(name, &Mesh::with_normals(positions.clone(), normals, mesh.triangles().to_vec()).expect("sound"));
             check(name, &Mesh::new(positions, mesh.triangles().to_vec()).expect("sound"));

@@ -61,7 +61,7 @@ pub struct Mesh {
     convex: bool,
     /// A bit for each triangle that has a back-to-back twin; empty if none has.
     twins: Vec<u64>,
-    facts: facts::Facts,
+    pub(crate) facts: facts::Facts,
 }
 
 /// The line of each triangle in the file that the mesh was read from; empty if there was no file. Ignored when meshes

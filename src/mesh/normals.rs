@@ -106,12 +106,13 @@ fn angles(corners: [Vec3; 3]) -> [f64; 3] {
 /// Decides which faces at a position are averaged together.
 pub(super) struct SmoothingRule<'a> {
     /// The cosine of the greatest angle between two ungrouped faces that are averaged together.
-    least: f64,
+    pub(super) least: f64,
     /// The index of each triangle's smoothing group, [`FLAT`](Self::FLAT) or [`NO_GROUP`](Self::NO_GROUP). Empty if
     /// there are no groups.
-    groups: &'a [u32],
-    /// The edges of the mesh if it may be a scan; otherwise `None`.
-    edges: Option<topology::Edges>,
+    pub(super) groups: &'a [u32],
+    /// The edges of the mesh if it may be a scan; otherwise `None`. If its sharp edges are
+    /// [scattered](Self::is_scattered), it is smooth everywhere.
+    pub(super) edges: Option<topology::Edges>,
 }
 
 impl<'a> SmoothingRule<'a> {
@@ -125,14 +126,6 @@ impl<'a> SmoothingRule<'a> {
         // 2⁻⁴⁰ covers rounding: faces at exactly the crease angle are smooth. NaN leaves all faces flat.
         let least = libm::cos(crease.to_radians().clamp(0.0, core::f64::consts::PI)) - 1.0 / 1_099_511_627_776.0;
         Self { least, groups, edges: None }
-    }
-
-    /// Makes the mesh with these edges smooth everywhere if its sharp edges are [scattered], as on a scan. Otherwise
-    /// the rule is unchanged.
-    ///
-    /// [scattered]: Self::is_scattered
-    pub(super) fn unless_scattered(self, edges: topology::Edges) -> Self {
-        Self { edges: Some(edges), ..self }
     }
 
     /// Returns whether sharp edges end at random places, as they do when they come from noise. On a designed model they

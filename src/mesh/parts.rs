@@ -155,7 +155,7 @@ impl Mesh {
         if !complete {
             let rule = match crease {
                 Some(crease) => SmoothingRule::new(crease, &[]),
-                None => SmoothingRule::new(CREASE, &groups).unless_scattered(edges),
+                None => SmoothingRule { edges: Some(edges), ..SmoothingRule::new(CREASE, &groups) },
             };
             mesh.average(&points, Weight::Angle, Some(rule), known);
         }

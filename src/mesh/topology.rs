@@ -217,15 +217,9 @@ pub(super) fn is_convex(positions: &[Vec3], triangles: &[[u32; 3]], points: &[u3
     if !edges.are_pairs() {
         return false;
     }
-    let mut sum = [0.0; 3];
-    let mut corners = 0.0;
-    for &triangle in triangles {
-        for vertex in triangle {
-            sum = add(sum, widen(positions[vertex as usize]));
-            corners += 1.0;
-        }
-    }
-    let inside = scale(sum, 1.0 / corners);
+    let corners = triangles.as_flattened();
+    let sum = corners.iter().fold([0.0; 3], |sum, &vertex| add(sum, widen(positions[vertex as usize])));
+    let inside = scale(sum, 1.0 / corners.len() as f64);
 
     let surface = || triangles.iter().filter(|t| !is_line(welded(**t, points)));
     let seen = |triangle: &[u32; 3]| triangle.map(|vertex| sub(widen(positions[vertex as usize]), inside));

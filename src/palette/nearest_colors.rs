@@ -41,15 +41,6 @@ struct Candidates {
     index: Vec<i16>,
 }
 
-impl Candidates {
-    fn push(&mut self, Candidate { color, index }: Candidate) {
-        self.red.push(color.r.into());
-        self.green.push(color.g.into());
-        self.blue.push(color.b.into());
-        self.index.push(index.into());
-    }
-}
-
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     color: Rgb,
@@ -101,7 +92,12 @@ impl NearestColors {
         let reaches = || reaches.iter().zip(colors).map(|(reach, c)| reach.and(c.color.b, b));
         let bound = reaches().map(|reach| reach.farthest).min().unwrap_or(0);
         let near = reaches().zip(colors).filter(|(reach, _)| reach.nearest <= bound);
-        near.for_each(|(_, &candidate)| self.candidates.push(candidate));
+        for (_, candidate) in near {
+            self.candidates.red.push(candidate.color.r.into());
+            self.candidates.green.push(candidate.color.g.into());
+            self.candidates.blue.push(candidate.color.b.into());
+            self.candidates.index.push(candidate.index.into());
+        }
         self.starts.push(self.candidates.index.len());
     }
 

@@ -72,7 +72,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             view,
             reach,
             // The vintage method draws beyond a triangle's edges, and 16.16 clips differently.
-            is_out_of_sight: !is_integer && shading != Shading::GouraudVintage && reach.is_out_of_sight(view.near()),
+            is_out_of_sight: !is_integer && shading != Shading::GouraudVintage && reach.is_out_of_sight(view.near),
             change: inputs.change.get(index).copied().unwrap_or(Change::New),
             lamps_in_range: lamps(index).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count(),
             is_integer,
@@ -157,14 +157,14 @@ impl Rules<'_> {
                 && !(decision.on && effect.keeps_inside())
             {
                 decision = Decision { on, reason: Reason::Overrides, choice: forced_choice(on, decision.choice) };
-                overridden[effect.index()] = true;
+                overridden[effect as usize] = true;
             }
-            plan.decisions[effect.index()] = decision;
+            plan.decisions[effect as usize] = decision;
         }
         if let Some(max_error) = self.max_error {
             self.keep_within(max_error, plan);
         }
-        plan.stages = self.stages(plan, |effect| plan.is_on(effect) && overridden[effect.index()]);
+        plan.stages = self.stages(plan, |effect| plan.is_on(effect) && overridden[effect as usize]);
     }
 
     /// The stages of the object, from its decisions. `forced`: whether an effect is on only because
@@ -224,7 +224,9 @@ impl Rules<'_> {
     /// Returns whether per-pixel lighting would give each face a single shade, that of its own
     /// normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
-        self.object.mesh().is_faceted() && !before.is_on(Effect::PositionalLights) && !before.is_on(Effect::Specular)
+        self.object.mesh().facts.is_faceted
+            && !before.is_on(Effect::PositionalLights)
+            && !before.is_on(Effect::Specular)
     }
 
     /// Decides on an effect. `before`: the decisions so far, in the order of [`Effect::ALL`].
@@ -271,7 +273,7 @@ impl Rules<'_> {
     }
 
     fn near_clipping(&self) -> Decision {
-        let reason = Reason::Nearest { nearest: self.reach.nearest, near: f64::from(self.view.near()) };
+        let reason = Reason::Nearest { nearest: self.reach.nearest, near: f64::from(self.view.near) };
         if self.reach.crosses_near { Decision::on(reason) } else { Decision::off(reason) }
     }
 
@@ -361,31 +363,22 @@ impl Rules<'_> {
     }
 
     fn phong(&self, before: &ObjectPlan) -> Decision {
-        let Some(max_error) = self.max_error else {
-            return match self.shading.lights_pixels() {
-                true => Decision::on(Reason::Asked).choosing(Choice::Shading(self.shading)),
-                false => Decision::off(Reason::NotAsked),
-            };
-        };
-        if !before.is_on(Effect::Lighting) {
-            Decision::off(before[Effect::Lighting].reason)
-        } else if self.is_lit_by_face(before) {
-            Decision::off(Reason::Faceted)
-        } else {
-            Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong))
+        match self.max_error {
+            None if self.shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(self.shading)),
+            None => Decision::off(Reason::NotAsked),
+            _ if !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
+            _ if self.is_lit_by_face(before) => Decision::off(Reason::Faceted),
+            Some(max_error) => Decision::on(Reason::Budget { max_error }).choosing(Choice::Shading(Shading::Phong)),
         }
     }
 
     fn tessellation(&self, before: &ObjectPlan) -> Decision {
         // Faces are only split to improve their shades.
-        if !before.is_on(Effect::Lighting) {
-            Decision::off(before[Effect::Lighting].reason)
-        } else if self.max_error.is_some() {
-            Decision::off(Reason::LeftToBudget)
-        } else if self.inputs.settings.tessellates() {
-            Decision::on(Reason::Asked)
-        } else {
-            Decision::off(Reason::NotAsked)
+        match self.max_error {
+            _ if !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
+            Some(_) => Decision::off(Reason::LeftToBudget),
+            None if self.inputs.settings.tessellates() => Decision::on(Reason::Asked),
+            None => Decision::off(Reason::NotAsked),
         }
     }
 
@@ -413,15 +406,15 @@ impl Rules<'_> {
     /// farther apart than the longest edge in the texture, and between two vertices of a triangle w
     /// differs by at most the longest edge of the mesh.
     fn affine_error(&self) -> f64 {
-        let nearest = self.reach.nearest.max(f64::from(self.view.near()));
-        let (edge, texture_edge) = self.object.mesh().longest_edges();
+        let nearest = self.reach.nearest.max(f64::from(self.view.near));
+        let (edge, texture_edge) = self.object.mesh().facts.longest_edges;
         let size = self
             .object
             .materials
             .iter()
             .filter_map(|material| material.texture.as_ref())
             .fold(0, |size, t| size.max(1_u32 << t.width_bits()).max(1 << t.height_bits()));
-        let ratio = 1.0 + f64::from(edge) * self.view.scale() / nearest;
+        let ratio = 1.0 + f64::from(edge) * self.view.scale / nearest;
         let root = libm::sqrt(ratio);
         (root - 1.0) / (root + 1.0) * f64::from(texture_edge) * f64::from(size)
     }
@@ -514,7 +507,7 @@ fn mapping(plan: &ObjectPlan) -> Mapping {
 /// and at most `farthest` away along the view: the texels of a texture's longer side, times the change in texture
 /// coordinates per unit, times a pixel's longer side.
 fn texels_to_pixel(object: &Object, view: &ObjectView, farthest: f64) -> f64 {
-    let images = object.materials.iter().zip(object.mesh().steepest_texcoords());
+    let images = object.materials.iter().zip(&object.mesh().facts.steepest_texcoords);
     let steepest = images.filter_map(|(material, change)| {
         let texture = material.texture.as_ref()?;
         Some(change * f64::from(texture.width().max(texture.height())))

@@ -88,10 +88,4 @@ impl Effect {
             Self::PaletteAnimation => cfg!(mode13h_leave_out = "palette-animation"),
         }
     }
-
-    /// Its index in the list.
-    #[must_use]
-    pub(crate) const fn index(self) -> usize {
-        self as usize
-    }
 }

@@ -84,7 +84,7 @@ impl Index<Effect> for ObjectPlan {
 
     fn index(&self, effect: Effect) -> &Decision {
         // There is one decision per effect.
-        &self.decisions[effect.index()]
+        &self.decisions[effect as usize]
     }
 }
 

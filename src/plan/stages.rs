@@ -160,13 +160,6 @@ switches! {
     needs_tables: Fog | RgbChannels | Texture | EnvironmentMap | Transparency;
 }
 
-impl Stages {
-    /// Returns whether faces are lit rather than vertices or pixels.
-    pub(crate) const fn lights_faces(&self) -> bool {
-        matches!(self.lit_at, LitAt::Faces)
-    }
-}
-
 /// The stages of one object.
 #[derive(Clone, Copy, PartialEq, Debug, Default)]
 pub(crate) struct Stages {

@@ -75,7 +75,7 @@ fn distance(view: &ObjectView, plane: usize, corner: &Corner) -> f64 {
     let (cx, cy) = view.centre();
     let limit = ObjectView::LIMIT;
     let distance = match plane {
-        0 => w - f64::from(view.near()),
+        0 => w - f64::from(view.near),
         1 => x + (limit + cx) * w,
         2 => (limit - cx) * w - x,
         3 => y + (limit + cy) * w,
@@ -103,7 +103,7 @@ fn cut(
     let mean = |a: f64, b: f64| (b * d_inside - a * d_outside) / whole;
     let (a, b) = (inside.at, outside.at);
     let (low, high) = (a.w.min(b.w), a.w.max(b.w));
-    let w = if plane == 0 { f64::from(view.near()) } else { mean(a.w, b.w).max(low).min(high) };
+    let w = if plane == 0 { f64::from(view.near) } else { mean(a.w, b.w).max(low).min(high) };
     let (cx, cy) = view.centre();
     let limit = ObjectView::LIMIT;
     let x = match plane {

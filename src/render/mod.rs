@@ -363,7 +363,7 @@ impl Renderer {
         for (i, (object, state)) in scene.objects().iter().zip(&mut self.cache.states).enumerate() {
             let plan = &self.cache.plan.objects[i];
             if !scene.is_visible(i) {
-                state.invalidate();
+                state.made_by = None;
                 continue;
             }
             if plan.stages().is_out_of_sight && self.cache.change[i] != Change::New {
@@ -371,7 +371,7 @@ impl Renderer {
             }
             if self.cache.plan.is_integer {
                 changed = true;
-                state.invalidate();
+                state.made_by = None;
                 continue;
             }
             if state.vertices(scene, object, &view, plan, self.kernel, &mut stats) {

@@ -42,20 +42,6 @@ struct Parameters {
     bits: Option<u8>,
 }
 
-impl Parameters {
-    fn new(scene: &Scene, view: &ObjectView, settings: &Settings) -> Self {
-        Self {
-            view: *view,
-            ambient: scene.ambient,
-            ramps: scene.palette.as_ref().map_or(0, Palette::ramps),
-            fog: scene.fog,
-            accuracy: settings.drawn_accuracy(),
-            tolerance: settings.tolerance(),
-            bits: settings.vertex_bits,
-        }
-    }
-}
-
 /// Inputs of an object's vertices, besides the plan.
 #[derive(Debug)]
 struct VertexInputs {
@@ -83,7 +69,7 @@ impl VertexInputs {
     /// The light on the object according to its plan, with only these lamps.
     fn lights<'a>(&'a self, lamps: &'a [LampBeam], plan: &ObjectPlan) -> Lights<'a> {
         let suns = if plan.stages().is_lit() { self.suns.as_slice() } else { &[] };
-        Lights { suns, lamps, eye: self.parameters.view.eye() }
+        Lights { suns, lamps, eye: self.parameters.view.eye }
     }
 }
 
@@ -122,7 +108,7 @@ fn sun(light: &Light, view: &ObjectView) -> Option<SunBeam> {
 pub(super) fn lamp(light: &Light, view: &ObjectView) -> Option<LampBeam> {
     let Light::Lamp { position, intensity, range, color, cone } = *light else { return None };
     // In the object's units.
-    let part = view.scale() / f64::from(range);
+    let part = view.scale / f64::from(range);
     let cone = match cone {
         Some(cone) => Some(ConeBeam::new(&cone, view.direction_in_object(cone.direction)?)?),
         None => None,
@@ -181,8 +167,8 @@ pub(super) struct ObjectState {
     source: Option<VertexInputs>,
     /// True if the source has changed since the vertices were computed.
     stale: bool,
-    /// The plan that the vertices were computed by, without its reasons.
-    made_by: Option<Stages>,
+    /// The plan that the vertices were computed by, without its reasons; `None` if they are not valid.
+    pub(super) made_by: Option<Stages>,
     pub(super) materials: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
@@ -198,7 +184,16 @@ impl ObjectState {
     /// Brings the state up to date with the object and the settings. Returns how the object has changed since its
     /// vertices were computed.
     pub(super) fn renew(&mut self, scene: &Scene, object: &Object, view: &ObjectView, settings: &Settings) -> Change {
-        let (mesh, parameters) = (object.shared_mesh(), Parameters::new(scene, view, settings));
+        let mesh = object.shared_mesh();
+        let parameters = Parameters {
+            view: *view,
+            ambient: scene.ambient,
+            ramps: scene.palette.as_ref().map_or(0, Palette::ramps),
+            fog: scene.fog,
+            accuracy: settings.drawn_accuracy(),
+            tolerance: settings.tolerance(),
+            bits: settings.vertex_bits,
+        };
         let source = self.source.get_or_insert_with(|| VertexInputs {
             mesh: Shared::clone(mesh),
             suns: Vec::new(),
@@ -221,11 +216,6 @@ impl ObjectState {
     /// Its lamps, in range or not.
     pub(super) fn all_lamps(&self) -> &[LampBeam] {
         self.source.as_ref().map_or(&[], |source| &source.lamps)
-    }
-
-    /// Invalidates the cached vertices.
-    pub(super) fn invalidate(&mut self) {
-        self.made_by = None;
     }
 
     /// Computes the vertices, unless last frame's are valid. Returns whether it did.

@@ -14,6 +14,7 @@ use crate::lanes::{LANES, three};
 use crate::light::Blend;
 use crate::mesh::Mesh;
 use crate::plan::FaceShading;
+use crate::plan::stages::LitAt;
 use crate::raster::columns::{PickedTriangles, Picks, ScreenPos, Triangles};
 use crate::raster::cull::{CullMasks, PickList, cull, pick};
 use crate::raster::effects::Attributes;
@@ -194,12 +195,6 @@ impl<'a> Picker<'a> {
         self.finish(&Triangles::NONE);
     }
 
-    /// Returns whether there is no room for 64 more, or for the parts of one more face.
-    #[inline]
-    fn is_full(&self) -> bool {
-        self.scratch.picks.as_slice().len() > CAPACITY || self.scratch.added.pending() >= AddedTriangles::MAX_PENDING
-    }
-
     /// Draws the pending picks, all of which are lit. `triangles` are the object's.
     #[inline(never)]
     fn finish(&mut self, triangles: &Triangles<'_>) {
@@ -210,7 +205,7 @@ impl<'a> Picker<'a> {
             let triangles = if look.added { added.triangles() } else { *triangles };
             keeps |= look.transparent && look.added;
             if first < end {
-                (self.draw)(&Run { look, triangles, picks: picks.range(first, end), faces: added.faces() });
+                (self.draw)(&Run { look, triangles, picks: picks.range(first, end), faces: &added.faces });
             }
             first = end;
         }
@@ -231,7 +226,7 @@ impl Faces<'_> {
     pub(super) fn pick(&self, budget: Option<&Budget>, stats: &mut Stats, picker: &mut Picker<'_>) -> Shares {
         let (triangles, culls) = (self.geometry.triangles, self.stages.culls());
         stats.faces += triangles.len() as u64;
-        if self.stages.lights_faces() {
+        if self.stages.lit_at == LitAt::Faces {
             picker.scratch.flat.reserve(ROOM);
         }
         // Every shading that a budget chooses has exact coverage, and so does a single shade.
@@ -316,7 +311,7 @@ impl Faces<'_> {
 
     /// Returns whether each face has one shade, unless a budget or a stage for pixels gives it others.
     fn has_one_shade(&self) -> bool {
-        self.stages.lights_faces() || !self.stages.interpolates()
+        self.stages.lit_at == LitAt::Faces || !self.stages.interpolates()
     }
 
     /// The look of faces of a surface that are drawn with one shading.
@@ -343,17 +338,18 @@ impl Faces<'_> {
     /// The single shade of a face, or its channels, if faces are lit.
     #[inline]
     fn lit_face(&self, face: Face, stats: &mut Stats) -> Option<[U8F8; 3]> {
-        if !self.stages.lights_faces() {
+        if self.stages.lit_at != LitAt::Faces {
             return None;
         }
         stats.lit += 1;
         Some(self.flat(face))
     }
 
-    /// Draws the pending picks if there is no room for more.
+    /// Draws the pending picks if there is no room for 64 more, or for the parts of one more face.
     #[inline]
     fn make_space(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        if picker.is_full() {
+        let PickScratch { picks, added, .. } = &*picker.scratch;
+        if picks.as_slice().len() > CAPACITY || added.pending() >= AddedTriangles::MAX_PENDING {
             self.finish(picker, stats);
         }
     }
@@ -367,7 +363,7 @@ impl Faces<'_> {
     /// Lights the picked faces that are not lit yet, each as a whole, if faces are lit.
     #[inline]
     fn light_pending(&self, picker: &mut Picker<'_>, stats: &mut Stats) {
-        if self.stages.lights_faces() {
+        if self.stages.lit_at == LitAt::Faces {
             self.light_faces(picker, stats);
         }
     }

@@ -62,7 +62,7 @@ pub(super) struct AddedTriangles {
     lit: Vec<[f32; 6]>,
     indices: Vec<[u32; 3]>,
     /// The face that each is part of.
-    faces: Vec<u32>,
+    pub(super) faces: Vec<u32>,
     /// Numbers of vertices and triangles kept until the frame is drawn.
     kept: (usize, usize),
 }
@@ -137,11 +137,6 @@ impl AddedTriangles {
             indices: &self.indices,
             by_corner: None,
         }
-    }
-
-    /// The face that each is part of.
-    pub(super) fn faces(&self) -> &[u32] {
-        &self.faces
     }
 
     /// Keeps all added triangles until the frame is drawn.

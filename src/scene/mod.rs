@@ -314,21 +314,16 @@ impl Scene {
                     }
                 }
                 Motion::Path { what, path } => {
-                    let at = path.at(seconds);
-                    match what {
-                        Moving::Object(object) => {
-                            if let Some(object) = self.get_mut(object) {
-                                object.position = at;
-                            }
-                        }
-                        Moving::Light(light) => match self.light_mut(light) {
-                            Some(Light::Sun { direction: vector, .. } | Light::Lamp { position: vector, .. }) => {
-                                *vector = at
-                            }
-                            None => {}
-                        },
-                        Moving::Eye => self.camera.eye = at,
-                        Moving::Target => self.camera.target = at,
+                    let moved = match what {
+                        Moving::Object(object) => self.get_mut(object).map(|object| &mut object.position),
+                        Moving::Light(light) => self.light_mut(light).map(|light| match light {
+                            Light::Sun { direction: vector, .. } | Light::Lamp { position: vector, .. } => vector,
+                        }),
+                        Moving::Eye => Some(&mut self.camera.eye),
+                        Moving::Target => Some(&mut self.camera.target),
+                    };
+                    if let Some(vector) = moved {
+                        *vector = path.at(seconds);
                     }
                 }
             }

@@ -115,7 +115,7 @@ impl Vga {
     #[must_use]
     #[inline]
     pub const fn stamp(&self) -> u64 {
-        self.stamp.value()
+        self.stamp.value
     }
 
     /// `out port, value`. Ports 3C6h to 3C9h reach the [`Dac`]; a write to any other is ignored.
@@ -136,13 +136,7 @@ impl Vga {
     pub fn read_port(&mut self, port: u16) -> u8 {
         match port {
             Dac::PIXEL_MASK => self.dac.mask,
-            Dac::READ_INDEX => {
-                if self.dac.reading {
-                    3
-                } else {
-                    0
-                }
-            }
+            Dac::READ_INDEX => 3 * u8::from(self.dac.reading),
             Dac::WRITE_INDEX => self.dac.address,
             Dac::DATA => self.dac.read_data(),
             Self::INPUT_STATUS => self.beam.status(),

@@ -15,7 +15,7 @@ static BLOCKS: AtomicUsize = AtomicUsize::new(1);
 /// machines can coincide; there a stamp is only valid for one machine.)
 #[derive(Debug)]
 pub(super) struct Stamp {
-    value: u64,
+    pub(super) value: u64,
     /// The last stamp of the block reserved for this machine.
     last: u64,
 }
@@ -23,10 +23,6 @@ pub(super) struct Stamp {
 impl Stamp {
     pub(super) const fn new() -> Self {
         Self { value: 0, last: 0 }
-    }
-
-    pub(super) const fn value(&self) -> u64 {
-        self.value
     }
 
     #[inline]

@@ -1,6 +1,7 @@
 //! The window's own pixels, for drawing over the picture.
 
 use super::area::Area;
+use crate::export::picture::source;
 use crate::palette::Rgb;
 
 /// The window's pixels with the picture stretched over them, as passed to the closure of
@@ -10,23 +11,18 @@ use crate::palette::Rgb;
 /// resolution. Anything beyond the window is clipped.
 #[derive(Debug)]
 pub struct Canvas<'a> {
-    pixels: &'a mut [u32],
-    width: usize,
-    height: usize,
-    picture: Area,
+    pub(super) pixels: &'a mut [u32],
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) picture: Area,
 }
 
 impl<'a> Canvas<'a> {
     /// A standalone canvas with a picture as large as fits, as in a window of this size. `None` unless there are
     /// exactly `width` × `height` pixels.
     pub fn new(pixels: &'a mut [u32], width: usize, height: usize) -> Option<Canvas<'a>> {
-        (width.checked_mul(height) == Some(pixels.len()))
-            .then(|| Canvas::over(pixels, (width, height), Area::within(width, height)))
-    }
-
-    /// The pixels of a stretched picture; their number must match its size.
-    pub(super) fn over(pixels: &'a mut [u32], (width, height): (usize, usize), picture: Area) -> Canvas<'a> {
-        Canvas { pixels, width, height, picture }
+        let is_whole = width.checked_mul(height) == Some(pixels.len());
+        is_whole.then(|| Canvas { pixels, width, height, picture: Area::within(width, height) })
     }
 
     /// The number of columns.
@@ -76,7 +72,6 @@ impl<'a> Canvas<'a> {
         if rows == 0 {
             return;
         }
-        let source = |at: usize, to: usize, from: usize| (2 * at + 1) * from / (2 * to);
         for (y, row) in self.rows_mut(area) {
             let from = &colors[source(y, area.height, rows) * columns..][..columns];
             for (x, pixel) in row.iter_mut().enumerate() {

@@ -5,6 +5,7 @@ use std::mem;
 use super::area::Area;
 use super::canvas::Canvas;
 use crate::export::Picture;
+use crate::export::picture::source;
 use crate::vga::Vga;
 
 /// The stretched picture, reused so that nothing is allocated while the window size is unchanged.
@@ -12,7 +13,8 @@ use crate::vga::Vga;
 pub(super) struct Stretched {
     /// The sizes of the window and of the picture in pixels, and the picture's aspect ratio.
     sizes: [(usize, usize); 3],
-    place: Area,
+    /// The rectangle of the window that the picture fills.
+    pub(super) place: Area,
     /// The picture's column for each column of the window's rectangle.
     columns: Vec<usize>,
     colors: Vec<u32>,
@@ -22,11 +24,6 @@ pub(super) struct Stretched {
 }
 
 impl Stretched {
-    /// The rectangle of the window that the picture fills.
-    pub(super) fn place(&self) -> Area {
-        self.place
-    }
-
     /// The picture's columns and rows.
     pub(super) fn picture_size(&self) -> (usize, usize) {
         self.sizes[1]
@@ -86,18 +83,14 @@ impl Stretched {
     /// The last stretched picture, to be drawn over.
     pub(super) fn canvas(&mut self) -> Canvas<'_> {
         self.is_drawn_over = true;
-        Canvas::over(&mut self.pixels, self.sizes[0], self.place)
+        let (width, height) = self.sizes[0];
+        Canvas { pixels: &mut self.pixels, width, height, picture: self.place }
     }
 
     /// The last stretched picture, with anything drawn over it, if it has this size.
     pub(super) fn last(&self, width: usize, height: usize) -> Option<&[u32]> {
         (self.sizes[0] == (width, height) && !self.pixels.is_empty()).then_some(&self.pixels)
     }
-}
-
-/// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
-fn source(at: usize, to: usize, from: usize) -> usize {
-    (2 * at + 1) * from / (2 * to)
 }
 
 #[cfg(test)]
@@ -131,7 +124,7 @@ mod tests {
         vga.scan_out(&mut frame);
         for (width, height) in [(960, 720), (321, 200), (320, 240), (500, 100), (7, 300), (3, 3)] {
             let pixels = picture.vga(&vga, (width, height)).to_vec();
-            let place = picture.place();
+            let place = picture.place;
             assert_eq!(pixels.len(), width * height);
             for y in 0..height {
                 for x in 0..width {
@@ -163,7 +156,7 @@ mod tests {
             let picture =
                 Picture { pixels: &pixels, width: columns, height: rows, pitch, palette: palette.colors(), shape };
             let shown = stretched.picture(&picture, (640, 480)).to_vec();
-            assert_eq!((stretched.place(), stretched.picture_size()), (area, (columns, rows)));
+            assert_eq!((stretched.place, stretched.picture_size()), (area, (columns, rows)));
             let centre = |at: usize, to: usize, from: usize| ((at as f64 + 0.5) * from as f64 / to as f64) as usize;
             for (i, pixel) in shown.into_iter().enumerate() {
                 let (x, y) = ((i % 640).wrapping_sub(area.left), (i / 640).wrapping_sub(area.top));

@@ -322,7 +322,7 @@ impl Window {
 
     fn collect(&mut self) -> Flow {
         self.now = Instant::now();
-        let mut input = self.events.collect(&self.window, self.picture.place(), self.picture.picture_size());
+        let mut input = self.events.collect(&self.window, self.picture.place, self.picture.picture_size());
         input.elapsed = self.now.duration_since(self.before).as_secs_f64();
         self.has_input = input.differs(&self.input);
         self.input = input;

@@ -25,12 +25,12 @@ pub(in crate::render) struct Classes {
 /// drawn unclipped is nearer than the near plane.
 #[inline(always)]
 fn bend_of_clusters(view: &ObjectView, clusters: &EightClusters, edge: &Lanes<f32>) -> Lanes<f32> {
-    let ((row, offset), scale) = (view.along_view(), view.scale() as f32);
+    let ((row, offset), scale) = (view.along_view(), view.scale as f32);
     let middle = dot(&clusters.centres, &splat(row));
     let half = dot(&clusters.halves, &splat([row[0].abs(), row[1].abs(), row[2].abs()]));
     each!(lane => {
         let slack = 1e-5 * (middle[lane].abs() + half[lane] + offset.abs());
-        let near = greater(middle[lane] + offset - half[lane] - slack, view.near());
+        let near = greater(middle[lane] + offset - half[lane] - slack, view.near);
         lesser(edge[lane] * scale / (2.0 * near), 1.0)
     })
 }
@@ -44,7 +44,7 @@ fn bend_of_faces(view: &ObjectView, faces: &EightFaces) -> Lanes<f32> {
     each!(lane => {
         let (most, least) = (greater(a[lane], greater(b[lane], c[lane])), lesser(a[lane], lesser(b[lane], c[lane])));
         let slack = 1e-6 * (most.abs() + least.abs() + offset.abs());
-        let near = greater(least + offset - slack, view.near());
+        let near = greater(least + offset - slack, view.near);
         lesser((most - least + slack) / near / 4.0, 1.0)
     })
 }

@@ -329,7 +329,7 @@ mod tests {
                 project_tested(&view, &positions, kernel, &mut vertices);
                 for (i, &position) in positions.iter().enumerate() {
                     let alone = view.project(position);
-                    let mark = match view.homogeneous(position).w >= f64::from(view.near()) {
+                    let mark = match view.homogeneous(position).w >= f64::from(view.near) {
                         true => ScreenPos::NEEDS_CLIPPING,
                         false => ScreenPos::TOO_NEAR,
                     };
