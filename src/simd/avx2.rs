@@ -40,7 +40,7 @@ unsafe fn words(from: __m256i) -> __m128i {
 /// takes twice as many operations on the vector.
 #[inline(always)]
 pub(super) unsafe fn lanes_by_pairs(from: __m256i) -> [usize; 8] {
-    let (a, b, c, d): (usize, usize, usize, usize);
+    let (a, b, c, d): (u64, u64, u64, u64);
     // SAFETY: the caller has AVX2.
     unsafe {
         let (low, high) = (_mm256_castsi256_si128(from), _mm256_extracti128_si256::<1>(from));
@@ -49,8 +49,8 @@ pub(super) unsafe fn lanes_by_pairs(from: __m256i) -> [usize; 8] {
         asm!("vmovq {}, {}", lateout(reg) c, in(xmm_reg) high, options(pure, nomem, nostack, preserves_flags));
         asm!("vpextrq {}, {}, 1", lateout(reg) d, in(xmm_reg) high, options(pure, nomem, nostack, preserves_flags));
     }
-    let lower = |pair: usize| pair & 0xFFFF_FFFF;
-    [lower(a), a >> 32, lower(b), b >> 32, lower(c), c >> 32, lower(d), d >> 32]
+    let (lower, upper) = (|pair: u64| pair as u32 as usize, |pair: u64| (pair >> 32) as usize);
+    [lower(a), upper(a), lower(b), upper(b), lower(c), upper(c), lower(d), upper(d)]
 }
 
 /// Joins eight bytes that are loaded straight into a vector.

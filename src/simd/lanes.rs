@@ -40,7 +40,7 @@ pub(super) use intrinsics;
 ///
 /// # Safety invariant
 /// Every implementation computes what is said here: [`SpanList`](crate::span::list::SpanList) relies on it to admit
-/// spans.
+/// spans, and [`bytes_at`](Self::bytes_at) and [`look_up`](Self::look_up) to load bytes.
 pub(crate) trait Lanes8: Copy {
     /// Eight f64.
     type F64: Copy;
@@ -128,7 +128,7 @@ pub(crate) trait Lanes8: Copy {
         // At most 0xFFFF.
         let last = (from.len() - 1).min(0xFFFF);
         let at = self.to_indices(self.and_i32(at, self.splat_i32(last as i32)));
-        // SAFETY: an index with no other bits than those of the last one is not above it.
+        // SAFETY: an index masked with the last one is not above it.
         #[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
         return unsafe { each!(lane => *from.get_unchecked(at[lane])) };
         #[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]
@@ -138,7 +138,7 @@ pub(crate) trait Lanes8: Copy {
     #[inline(always)]
     fn look_up(self, table: &[u8; 65_536], rows: Self::I32, columns: [u8; 8]) -> [u8; 8] {
         let rows = self.to_indices(self.and_i32(rows, self.splat_i32(0xFF00)));
-        // SAFETY: an index has no bits above those of a row and a column.
+        // SAFETY: a row masked with 0xFF00 and a column are at most 0xFFFF together.
         #[cfg(any(simd_x86_64, simd_neon, simd_wasm))]
         return unsafe { each!(lane => *table.get_unchecked(rows[lane] | usize::from(columns[lane]))) };
         #[cfg(not(any(simd_x86_64, simd_neon, simd_wasm)))]

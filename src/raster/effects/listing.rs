@@ -11,7 +11,7 @@
 use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
-use crate::fixed::{ROUND_MAGIC, U8F8};
+use crate::fixed::{IS_COMPACT, ROUND_MAGIC, U8F8};
 use crate::lanes::{self, LANES, each, three};
 use crate::mapping::Mapping;
 use crate::raster::columns::{EffectColumns, PickedTriangles, Value};
@@ -517,9 +517,11 @@ impl Shades8 for EffectSpans<'_> {
             Some(_) => {
                 for (i, sum) in planes.perspective.starts(s, lane, j, parts.seed).into_iter().enumerate() {
                     s.store_i64(s.bits(sum), sums.eight(record, i));
-                    let mut doubles = [0.0; LANES];
-                    s.store_f64(sum, &mut doubles);
-                    *single_sums.eight(record, i) = each!(lane => doubles[lane] as f32);
+                    if !IS_COMPACT {
+                        let mut doubles = [0.0; LANES];
+                        s.store_f64(sum, &mut doubles);
+                        *single_sums.eight(record, i) = each!(lane => doubles[lane] as f32);
+                    }
                 }
             }
             None => {}

@@ -502,6 +502,9 @@ mod tests {
     use crate::span::texture::Levels;
     use crate::span::texture::PerspectiveSums;
 
+    /// In place of offsets that quotients cannot decide: no decided one, shifted right by 16 bits or more, has this value.
+    const UNDECIDED: i32 = i32::MIN;
+
     /// The definition in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.
     fn defined(triangle: &SortedTriangle, coordinates: [i32; 3], level: u32, (x, y): (i32, i32)) -> u32 {
         let weights = Weights::new(triangle);
@@ -860,10 +863,10 @@ mod tests {
                     PickedTriangles { triangles: &all, picks: Picks { picks: list.as_slice(), flat: &[] } },
                     &pipeline,
                 ) {
-                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
+                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [UNDECIDED; LANES];
                     let image = OffsetLanes::of_level(BASELINE, (texels, 0));
                     let end = found.span.len.min(LANES);
-                    let mut offsets = [[-1; LANES]; 2];
+                    let mut offsets = [[UNDECIDED; LANES]; 2];
                     BASELINE.store_i32(
                         perspective_along(image, found.perspective, (0, end), unsure).next(),
                         &mut offsets[0],
@@ -872,7 +875,8 @@ mod tests {
                         BASELINE.store_i32(singles_along(image, singles, 0, unsure).next(), &mut offsets[1]);
                     }
                     let mut count = decided.get();
-                    for (count, offsets) in count.iter_mut().zip(offsets).filter(|(_, offsets)| offsets[0] != -1) {
+                    for (count, offsets) in count.iter_mut().zip(offsets).filter(|(_, offsets)| offsets[0] != UNDECIDED)
+                    {
                         for (k, offset) in offsets.into_iter().enumerate().take(end) {
                             let [u, v] = plane.at(found.span.x + k as i32, found.span.y).map(i32::cast_unsigned);
                             prop_assert_eq!(offset & 0xFFFF, texels.offset(u, v) as i32);
@@ -928,7 +932,7 @@ mod tests {
                 ) {
                     let (mut offsets, end) = ([0; LANES], found.span.len.min(LANES));
                     // Only the other coordinate may be undecided.
-                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [-1; LANES];
+                    let unsure = |_: usize, eight: &mut [i32; LANES]| *eight = [UNDECIDED; LANES];
                     let image = (texels, 0);
                     let in_f64 =
                         perspective_along(OffsetLanes::of_level(BASELINE, image), found.perspective, (0, end), unsure)
@@ -944,8 +948,8 @@ mod tests {
                         in_f32.set(in_f32.get() + 1);
                     }
                     for offsets in all_of_them {
-                        prop_assert!(line != [0; 3] || offsets[0] != -1);
-                        if offsets[0] == -1 {
+                        prop_assert!(line != [0; 3] || offsets[0] != UNDECIDED);
+                        if offsets[0] == UNDECIDED {
                             continue;
                         }
                         decided.set(decided.get() + 1);

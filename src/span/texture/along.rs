@@ -16,7 +16,7 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
     (tint, along): (T, &mut T::Along<S>),
     mut offsets: impl OffsetsAlong<S>,
 ) {
-    // Never true: it tells the compiler that there is a last texel, so that the masked index needs no check.
+    // Never true. Without it the compiler would ask for every block, which takes up to 60 % longer.
     if texels.bytes.is_empty() {
         return;
     }
@@ -35,7 +35,9 @@ pub(crate) fn show_along<S: Lanes8, T: Tint>(
             }
             return;
         };
-        // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged.
+        // How many pixels are left is unpredictable: trailing bytes are rewritten unchanged. (Each case loads its own
+        // texels, and a block is split off after the first: otherwise the compiler would load them for all cases at
+        // once and join them later, which takes full blocks up to 40 % longer.)
         if left <= FOUR {
             let mask = u32::MAX >> (8 * (FOUR - left));
             let [bytes, _] = fours(s.join_bytes(shown(s, (tint, tint.rows(s, along)), texels, offsets, pixels)));
