@@ -13,7 +13,7 @@ use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
 /// The memory that the stages allocate when they first draw; later they allocate nothing.
-const HEAP: usize = 0x1_C000;
+const HEAP: usize = 0x1_D000;
 
 /// The size of a context in bytes, if its memory is aligned to 16.
 pub(crate) const BYTES: usize = size_of::<Context>() + HEAP;
