@@ -138,7 +138,8 @@ fn run(options: Options) -> Result<(), Box<dyn Error>> {
     if options.table {
         for kernel in ["simd-avx2", "simd-avx512"] {
             print_table(kernel, &tables);
-            print_frames(kernel, &frames);
+            print_frames("depth buffer", kernel, &frames);
+            print_frames("as planned", kernel, &frames);
         }
     }
     if let Some(path) = &options.json {
@@ -241,21 +242,21 @@ fn print_table(kernel: &str, tables: &[Value]) {
     }
 }
 
-/// Prints how many times slower Mesa is than ours with a depth buffer and this kernel: one row per
-/// drawing of whole frames, one column per scene.
-fn print_frames(kernel: &str, frames: &[Value]) {
+/// Prints how many times slower Mesa is than ours, which is "depth buffer" or "as planned", with this
+/// kernel: one row per drawing of whole frames, one column per scene.
+fn print_frames(ours: &str, kernel: &str, frames: &[Value]) {
     let mut names: Vec<&str> = Vec::new();
     for name in frames.iter().filter_map(|frame| frame["name"].as_str()) {
         if !names.contains(&name) {
             names.push(name);
         }
     }
-    println!("\n| Mesa ÷ ours, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
+    println!("\n| Mesa ÷ ours, {ours}, {kernel} | {} |\n|---|{}", names.join(" | "), "---:|".repeat(names.len()));
     for stages in Stages::ALL {
         let cell = |name: &&str| {
             let frame = frames.iter().find(|frame| frame["name"] == **name && frame["stages"] == stages.name())?;
-            let ours =
-                frame["ours"].as_array()?.iter().find(|ours| ours["name"] == format!("depth buffer, {kernel}"))?;
+            let name = format!("{ours}, {kernel}");
+            let ours = frame["ours"].as_array()?.iter().find(|ours| ours["name"] == name)?;
             ours["mesa_by_ours"]["median"].as_f64().map(|ratio| format!("{ratio:.2}"))
         };
         let cells: Vec<String> = names.iter().map(|name| cell(name).unwrap_or_else(|| "–".to_owned())).collect();
