@@ -1,4 +1,4 @@
-//! A loader of your own: heights in an ASCII PGM picture become a mesh with four surfaces, drawn in `terrain.png`.
+//! A loader of your own: heights in an ASCII PGM picture become a mesh with four surfaces, rendered to `terrain.png`.
 //!
 //!     cargo run --release --example terrain -- [HEIGHTS.pgm]
 

@@ -1,4 +1,4 @@
-//! A toon material: three tones, at every pixel, in `toon.png`.
+//! A toon material: three tones, lit at every pixel and rendered to `toon.png`.
 //!
 //!     cargo run --release --example toon
 

@@ -6,9 +6,9 @@
 //! | [`U8F8`] | a shade | 8 integer, 8 fraction | 1/256 shade |
 //! | [`I16F16`] | a coordinate or factor of the integer vertex path | 16 integer and sign, 16 fraction | 1/65,536 |
 //!
-//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. In
-//! fact `sar` rounds toward minus infinity and a division rounds toward zero, so narrowing has to
-//! specify which. Here the name of each narrowing conversion says how it rounds.
+//! The Hungarian tutorial warns that a right shift of a negative number needs `sar`, not `shr`. But
+//! `sar` rounds toward minus infinity and a division toward zero, so narrowing has to specify
+//! which. Here the name of each narrowing conversion says how it rounds.
 
 /// Whether the target has IEEE double precision in hardware. If not, branches that use floats are
 /// compiled out. (x87 is excluded: its intermediate results have 64-bit mantissas.)

@@ -57,11 +57,11 @@
 //!
 //! # Features
 //!
-//! The default features are what a game needs: `std`, `asm` and `simd` (fast spans; without both the crate forbids
-//! `unsafe` code), and `png`. Optional are `window` and `embedded-graphics` (text and shapes on a frame). The crate
-//! `mode13h-assets` reads files. Without any feature, `fixed`, `palette`, `vga`, `span`, `raster`, `integer` and the list
-//! of shadings remain, which need neither `std` nor an allocator; `alloc` adds the engine. The feature `internals` opens
-//! the engine's internals to the lab, the conformance crate, tests and benchmarks; they may change in any version.
+//! The default features are `std`, `asm` and `simd` (fast spans; without either, the crate forbids `unsafe` code), and
+//! `png`. `window` and `embedded-graphics` (text and shapes on a frame) are optional. The crate `mode13h-assets` reads
+//! files. Without any feature, `fixed`, `palette`, `vga`, `span`, `raster`, `integer` and the list of shadings remain,
+//! which need neither `std` nor an allocator; `alloc` adds the engine. The feature `internals` opens the engine's
+//! internals to the lab, the conformance crate, tests and benchmarks; they may change in any version.
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![cfg_attr(not(any(feature = "asm", feature = "simd")), forbid(unsafe_code))]

@@ -27,7 +27,7 @@
  * STRUCTS have their size as their first member, and later versions may append members. m13_target, m13_mesh and
  * m13_material each have a function m13_..._init that sets it and gives all other members harmless values: call it first,
  * then set what you need. m13_stats, which the library fills in, has none: set its `size` yourself. Only m13_vertex and
- * m13_vertex_x have no size: they are four numbers, and stay so.
+ * m13_vertex_x have no size: they are four numbers, and will stay that way.
  *
  * COORDINATES. x runs to the right and y down, in pixels. The top left pixel covers 0 to 1, so its centre is at (0.5, 0.5).
  * Coordinates are rounded to the nearest 1/256 pixel.
@@ -77,7 +77,7 @@ uint32_t m13_version(void);
 #define M13_SHORT (-6)        /* there are fewer bytes than the rows need, or more than memory can hold */
 #define M13_DEPTH (-7)        /* a depth buffer must have 16 or 32 bits, and a value for each pixel */
 #define M13_ALIGNMENT (-8)    /* a depth buffer, a picture or memory is not aligned */
-#define M13_OVERLAP (-9)      /* an input overlaps what is drawn into */
+#define M13_OVERLAP (-9)      /* an input overlaps the memory that is drawn into */
 #define M13_INDEX (-10)       /* an index refers to a vertex that does not exist */
 #define M13_COUNT (-11)       /* triangles need a multiple of three vertices or indices */
 #define M13_LAYOUT (-12)      /* an attribute is missing, or does not fit into the stride */
@@ -109,7 +109,7 @@ typedef struct m13_target {
     size_t depth_bytes;
 } m13_target;
 
-/* A whole frame without a depth buffer. For rows that run upwards draw into a frame that is mirrored. */
+/* A whole frame without a depth buffer. If your rows run upwards, count y from the bottom row. */
 int m13_target_init(m13_target *target, void *pixels, size_t bytes, uint32_t width, uint32_t height, size_t pitch);
 
 /* Gives a target a depth buffer of 16 or 32 bits, aligned to its values; 0 bits removes it. Sixteen bits hold the upper 16
@@ -172,8 +172,8 @@ int m13_triangle_x(const m13_target *target, const m13_vertex_x corners[3], uint
 /* The offset of an attribute that vertices lack. */
 #define M13_ABSENT 0xFFFFFFFFu
 
-/* Your own vertices, one every `stride` bytes, and the positions of their numbers: offsets in bytes, as from offsetof. All
- * numbers have 32 bits, and need not be aligned. */
+/* Your own vertices, one every `stride` bytes, and the offsets of their attributes in bytes, as from offsetof. All numbers
+ * have 32 bits, and need not be aligned. */
 typedef struct m13_mesh {
     uint32_t size;
     uint32_t vertex_count;
@@ -274,7 +274,7 @@ int m13_draw_x(const m13_target *target, const m13_mesh *mesh, const m13_materia
 
 /* A palette is 768 bytes: red, green and blue of 256 colours, 0 to 255 each. A single colour is 0xRRGGBB. */
 
-/* The names of the built-in palettes, from index 0 on; null after the last. And a copy of one of them. */
+/* The names of the built-in palettes, from index 0 on; null after the last. The second function copies one of them. */
 const char *m13_palette_name(uint32_t index);
 int m13_palette_named(const char *name, uint8_t palette[768]);
 
@@ -297,8 +297,8 @@ int m13_palette_from_dac(const uint8_t dac[768], uint8_t out[768]);
 
 /* ---- Tables ---------------------------------------------------------------------------------------------------------- */
 
-/* Tables of 65,536 bytes for materials. Each entry is the nearest colour to an exact mixture, as the DAC shows both. They
- * take some milliseconds to make; on a 386, where it takes half a minute, load them from a file. */
+/* Tables of 65,536 bytes for materials. Each entry is the nearest colour to an exact mixture, as the DAC shows both. One
+ * takes some milliseconds to make; on a 386, where it takes half a minute, load it from a file. */
 
 /* table[shade * 256 + texel]: the texel's colour in a light of shade / 255. `texel_colors` is the palette of the texels, null
  * if it is the same. */
@@ -313,7 +313,7 @@ int m13_table_blend(const uint8_t palette[768], uint8_t opacity, uint8_t table[6
 /* table[new * 256 + old]: the sum of both, for things that glow. */
 int m13_table_add(const uint8_t palette[768], uint8_t table[65536]);
 
-/* ---- The way to a screen of today ------------------------------------------------------------------------------------ */
+/* ---- For modern screens ---------------------------------------------------------------------------------------------- */
 
 /* Writes the rows of a frame as 0x00RRGGBB or as 5, 6 and 5 bits, in the colours that a VGA shows. `pitch` is in bytes. */
 int m13_show_32(const m13_target *target, const uint8_t palette[768], uint32_t *out, size_t bytes, size_t pitch);

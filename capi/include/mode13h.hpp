@@ -74,7 +74,7 @@ struct Material : m13_material {
     explicit Material(std::uint32_t shading) { check(m13_material_init(this, shading)); }
 };
 
-/// A frame over the caller's bytes, which must live as long.
+/// A frame over the caller's bytes, which must outlive it.
 class Target : public m13_target {
 public:
     Target(std::span<std::uint8_t> bytes, std::uint32_t columns, std::uint32_t lines, std::size_t bytes_a_row)

@@ -70,7 +70,7 @@ pub(crate) struct Options {
     /// Rotate by DEGREES, spread over all frames
     ///
     /// A single frame is rotated by the whole angle, frame i of N by i/N of it, so 360 loops seamlessly. A scene or model that
-    /// moves by itself goes through one loop in 360 degrees; around one that does not, the camera circles.
+    /// moves by itself goes through one loop in 360 degrees; the camera circles one that does not.
     ///
     /// [default: 0; for an animation 360]
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]

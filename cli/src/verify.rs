@@ -27,7 +27,7 @@ pub(crate) struct Options {
     seed: u64,
     /// Check only the frame NAME, or all whose names begin with NAME/
     ///
-    /// For example effect/fog or shipped/torus/picture. No loops are checked then.
+    /// For example effect/fog or shipped/torus/picture. The pixel loops are then not checked.
     #[arg(long, value_name = "NAME", conflicts_with = "seed")]
     frame: Option<String>,
     /// List the names of the frames without checking them

@@ -47,8 +47,8 @@ pub struct Picture<'a> {
 }
 
 impl<'a> Picture<'a> {
-    /// The 320 × 200 visible bytes of mode 13h in the colours of `palette`, all eight bits of them; the card shows six,
-    /// [`Palette::on_dac`].
+    /// The 320 × 200 visible bytes of mode 13h in the colours of `palette`, with all eight bits; the card shows only
+    /// six (see [`Palette::on_dac`]).
     pub fn mode_13h(pixels: &'a [u8], palette: &'a Palette) -> Picture<'a> {
         Picture { pixels, width: 320, height: 200, pitch: 320, palette: palette.colors(), shape: PixelShape::MODE_13H }
     }

@@ -52,7 +52,7 @@ pub struct FixedMeshParts<'a, I: VertexIndex> {
     pub triangles: &'a [[I; 3]],
     /// Whether it is closed and faces outward.
     pub closed: bool,
-    /// A bit for each triangle that lies back to back with another, 64 per word; empty if there is none.
+    /// A bit for each triangle, 64 per word, set if it lies back to back with another; empty if there is none.
     pub twins: &'a [u64],
     /// The binary logarithm of its unit, in units of the scene.
     pub exponent: i32,
@@ -66,9 +66,9 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
     /// The largest absolute coordinate.
     pub(crate) const REACH: I16F16 = I16F16::from_int(i16::MAX);
 
-    /// Makes a mesh from vertices, with positions and unit normals, and triangles. Triangles are counter-clockwise seen
-    /// from outside, in a right-handed system with y up. `closed` promises that they enclose a solid without a gap, so
-    /// that back faces need not be drawn.
+    /// Makes a mesh from triangles and from vertices with positions and unit normals. Triangles are counter-clockwise
+    /// seen from outside, in a right-handed system with y up. `closed` promises that they enclose a solid without a
+    /// gap, so that back faces need not be drawn.
     ///
     /// # Errors
     /// A different number of normals than of positions; a coordinate outside ±32,767; a normal whose length is not
@@ -136,8 +136,8 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
         Ok(self)
     }
 
-    /// Marks each triangle that lies back to back with another with one bit, 64 per word. Marked triangles are culled
-    /// when they face away.
+    /// Marks the triangles that lie back to back with another: a bit for each triangle, 64 per word. Marked triangles
+    /// are culled when they face away.
     #[must_use]
     pub fn with_twins(mut self, twins: &'a [u64]) -> Self {
         self.parts.twins = twins;

@@ -134,7 +134,7 @@ impl IntegerError {
             Self::Direction => "the camera looks at its own position",
             Self::Scale => "an object's scale must not be negative",
             Self::TooFar => "an object reaches farther than 65,535 units from the eye",
-            Self::Light => "a sun must have a direction, and there may be 4,096 of them",
+            Self::Light => "every sun needs a direction, and there may be at most 4,096",
             Self::Materials { .. } => "each surface of a mesh must have a material",
             Self::Room { .. } => "there is too little room for vertices or lights",
             Self::Count { .. } => "the slices of a mesh must fit together",

@@ -1,7 +1,7 @@
 //! The sum of all light at points of a surface, eight at a time.
 //!
 //! Each point gets the results of [`Lights::one_channel`] and [`Lights::three_channels`]: the operations and their
-//! order are the same, and each operation (sum, product, quotient, square root) rounds equally in vectors and in
+//! order are the same, and each operation (sum, product, quotient, square root) rounds the same in vectors and in
 //! scalars. If a light does not contribute to a point, zero is added, which changes no sum, since none is −0: each
 //! starts at +0.
 //!

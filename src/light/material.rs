@@ -161,7 +161,7 @@ impl Material {
         Self { ramp: RampChoice::Nearest, color, highlight, ..self.clone() }
     }
 
-    /// Returns whether its three channels differ.
+    /// Returns whether the material is coloured: its red, green and blue differ.
     #[must_use]
     pub fn is_colored(&self) -> bool {
         is_colored(self.color) || (self.is_specular() && is_colored(self.highlight))

@@ -8,7 +8,7 @@
 //!
 //! A lamp falls off with the distance, a spot light also towards the edge of its [`Cone`].
 //!
-//! n is the unit normal, l points to the light, v to the eye, and r = 2·(n·l)·n − l is l mirrored at the surface. A
+//! n is the unit normal, l points to the light, v to the eye, and r = 2·(n·l)·n − l is l mirrored about the normal. A
 //! light behind a face adds nothing, never a negative amount. The sum is clamped once, after all lights, as in the
 //! Russian article: several lights together may reach full intensity where one alone would not. Intensities are DAC
 //! values without gamma correction, as was usual then.

@@ -9,15 +9,15 @@ const MAX_EXPONENT: f64 = 1_024.0;
 /// The shininess of a highlight: an exponent, at least 0.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) enum Shininess {
-    /// An integer up to 1,024, as nearly all are. The power is computed by multiplication, from the
-    /// lowest bit of the exponent up,
+    /// An integer up to 1,024, as nearly all exponents are. The power is a chain of products, from the lowest bit of
+    /// the exponent up:
     ///
     /// ```text
     /// result = 1;  for every bit:  if it is set, result = result·square;  square = square·square
     /// ```
     ///
-    /// each rounded once. No factor has more than s − 1 roundings, so the power is accurate to s
-    /// parts in 2⁵³. It takes a fifth of the time of `pow`, and less for several at once.
+    /// Each product is rounded once. No factor has more than s − 1 roundings, so the power is accurate to s parts in
+    /// 2⁵³. It takes a fifth of the time of `pow`, and less for several at once.
     Whole(u32),
     /// Any other exponent: `pow` of the `libm` crate.
     Other(f64),

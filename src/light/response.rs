@@ -18,7 +18,7 @@ use crate::shared::Shared;
 /// let mut scene = Scene::new();
 /// let teapot = scene.show(shapes::teapot(8));
 /// scene[teapot].materials[0].response = Some(toon);
-/// // At every pixel; without this at the vertices, and linear between them.
+/// // Light at every pixel; by default it is computed at the vertices, and linear in between.
 /// scene.settings.accuracy = Some(Shading::Phong.into());
 /// ```
 #[derive(Clone)]

@@ -42,7 +42,7 @@ pub enum Light {
 /// the angle θ to `direction`:
 ///
 /// ```text
-/// x     = (cos θ − cos outer) / (cos inner − cos outer), cut off to 0 … 1
+/// x     = (cos θ − cos outer) / (cos inner − cos outer), clamped to 0 … 1
 /// share = x²·(3 − 2x)
 /// ```
 ///
@@ -139,7 +139,7 @@ impl Light {
         }
     }
 
-    /// Returns the intensity for lighting on one channel: for a coloured light, times its luminance after ITU-R BT.601.
+    /// Returns the intensity for lighting on one channel: for a coloured light, times its luminance per ITU-R BT.601.
     #[must_use]
     pub fn brightness(&self) -> f32 {
         let color = self.color();

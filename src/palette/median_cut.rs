@@ -86,7 +86,7 @@ impl MedianCut {
         true
     }
 
-    /// Cuts until there are `boxes` boxes, or as many as distinct colours.
+    /// Cuts until there are `boxes` boxes, or one for each distinct colour.
     pub fn cut_to(&mut self, boxes: usize) {
         while self.boxes.len() < boxes && self.cut() {}
     }

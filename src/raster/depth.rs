@@ -99,7 +99,7 @@ impl<'a, D: Cell> DepthBuffer<'a, D> {
 /// for shade in [10.0, 20.0, 30.0, 40.0] {
 ///     let frame = Frame::new(&mut bytes, 32, 32, 32)?;
 ///     let mut raster = Raster::new(frame).with_depth_memory(&mut depths);
-///     // Each is farther away than the one of the frame before.
+///     // Each is farther away than the one in the frame before.
 ///     let corner = |x, y| Vertex::at(x, y, shade).with_depth(1_000 - shade as u32);
 ///     raster.triangle(&[corner(0.0, 0.0), corner(31.0, 0.0), corner(0.0, 31.0)], Interpolation::default());
 /// }

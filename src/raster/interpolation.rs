@@ -4,7 +4,7 @@ use crate::fixed::IS_SMALL;
 
 /// Interpolation of shades over the pixels of a triangle.
 ///
-/// Interpolations between vertices are named as the [`Shading`](crate::settings::Shading) that they draw:
+/// Interpolations between vertices are named after the [`Shading`](crate::settings::Shading) that they draw:
 ///
 /// | interpolation | differs from exact, in shades, by less than |
 /// |---|---|
@@ -12,7 +12,7 @@ use crate::fixed::IS_SMALL;
 /// | `Gouraud88` | ½ + w/256 over a row of w pixels: 1.75 over 320 |
 /// | `Gouraud88Reseeded`, the default | ½ + ¼ |
 /// | `Gouraud1616` | ½ + w/65,536: 0.505 over 320 |
-/// | `GouraudHyperbolic` | ½, or exactly that |
+/// | `GouraudHyperbolic` | ½, or at a tie exactly ½ |
 /// | `GouraudFloat` | ½ + 1/8,192 |
 ///
 /// The exact shade is linear on the screen, and for the last two linear on the face.

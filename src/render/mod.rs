@@ -111,7 +111,7 @@ impl Cache {
 pub struct Renderer {
     /// How to draw; the scene's own settings apply where this is `None`.
     pub settings: Settings,
-    /// Kernel that fills spans; the fastest by default. All give equal bytes.
+    /// Kernel that fills spans; the fastest by default. All draw the same bytes.
     pub kernel: Kernel,
     /// Effects that are forced on or off.
     overrides: Overrides,
@@ -181,9 +181,9 @@ impl Renderer {
         Some(FaceCounts { drawn, not_drawn })
     }
 
-    /// Bounds the error of an object's linear shades against light at every pixel, in shades of 1/255 of full
-    /// intensity, not counting rounding, from normals, lights and vertices, for the last frame drawn. `object` is its
-    /// index. `None` if the object is flat-shaded, does not exist, or is on the 16.16 path.
+    /// Bounds the error of an object's linear shades against light at every pixel, in the last frame drawn, from
+    /// normals, lights and vertices. It is in shades of 1/255 of full intensity, without rounding. `object` is the
+    /// object's index. `None` if the object is flat-shaded, does not exist, or is on the 16.16 path.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;

@@ -37,7 +37,7 @@ const HOLD: usize = 32;
 /// measured on other poses. Each failed trial doubles the wait, up to 16 times this.
 const PATIENCE: usize = 128;
 
-/// Chooses the [error budget](Accuracy::WithinError) of the next frame so that frames stay within a time.
+/// Chooses the [error budget](Accuracy::WithinError) of the next frame so that frames stay within a time limit.
 ///
 /// It uses only the times reported to it: the engine reads no clock. Errors go from 16 shades down to half a shade.
 ///

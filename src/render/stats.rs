@@ -27,7 +27,7 @@ pub struct Stats {
     pub redrawn: bool,
     /// Objects whose vertices were reused from the last frame.
     pub kept: u64,
-    /// Objects whose faces were drawn as an error budget decided.
+    /// Objects drawn within an error budget, which decided how to draw each face.
     pub decided: u64,
     /// Vertices transformed.
     pub vertices: u64,
@@ -126,9 +126,9 @@ impl fmt::Display for Stats {
         let counts = [
             (u64::from(raster.tested), "tested for depth"),
             (u64::from(raster.textured), "textured"),
-            (u64::from(raster.mipmapped), "of a level of their texture"),
+            (u64::from(raster.mipmapped), "mipmapped"),
             (u64::from(raster.mixed), "mixed from channels"),
-            (u64::from(raster.lit), "lit as pixels"),
+            (u64::from(raster.lit), "lit per pixel"),
             (u64::from(raster.fogged), "fogged"),
             (u64::from(raster.blended), "blended"),
             (u64::from(raster.dithered), "dithered"),
@@ -137,6 +137,6 @@ impl fmt::Display for Stats {
         for (count, what) in counts.into_iter().filter(|(count, _)| *count > 0) {
             write!(f, ", {count} {what}")?;
         }
-        if *redrawn { Ok(()) } else { f.write_str(", not drawn again") }
+        if *redrawn { Ok(()) } else { f.write_str(", not redrawn") }
     }
 }

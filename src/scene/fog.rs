@@ -4,7 +4,7 @@ use crate::palette::Rgb;
 
 /// Fog that thickens linearly with the distance along the view.
 ///
-/// It covers surfaces, not the background: set that to the same colour by
+/// It covers surfaces, not the background: set that to the same colour with
 /// [`Scene::set_background`](super::Scene::set_background).
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Fog {

@@ -321,7 +321,7 @@ impl Camera {
     /// let teapot = scene.add(Object::new(shapes::teapot(8)).centred());
     /// scene[teapot].rotate_x(Angle::from_degrees(20.0));
     /// scene.camera = Camera::framing_turn(&scene[teapot]);
-    /// // Nearer than from where its sphere would be seen whole.
+    /// // Nearer than where its whole sphere would be in view.
     /// let sphere = Camera::framing(scene[teapot].position, scene[teapot].mesh().bounds().radius);
     /// assert!(scene.camera.eye.z < 0.9 * sphere.eye.z);
     /// ```

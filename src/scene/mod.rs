@@ -62,8 +62,8 @@ pub struct Scene {
     /// The palette loaded into the DAC when the scene is drawn; with `None` the DAC is left alone. If the palette has
     /// no ramps, materials that name one are drawn with the nearest entries, dithered.
     ///
-    /// With textures, fog or transparency a new palette costs milliseconds, since their tables are recomputed. Fade by
-    /// [`palette_animation`](Self::palette_animation), or by [`Vga::fade`](crate::vga::Vga::fade) after drawing.
+    /// With textures, fog or transparency a new palette costs milliseconds, since their tables are recomputed. Fade
+    /// with [`palette_animation`](Self::palette_animation), or with [`Vga::fade`](crate::vga::Vga::fade) after drawing.
     pub palette: Option<Palette>,
     /// The change of the palette over time.
     pub palette_animation: Option<PaletteAnimation>,

@@ -67,7 +67,7 @@ impl Object {
     /// with `mode13h_assets::auto_palette`.
     ///
     /// If surfaces of the mesh share vertices, the mesh is copied, with one copy of such a vertex for each surface. To
-    /// share one mesh between objects nevertheless, call [`Mesh::with_one_surface_a_vertex`] first.
+    /// share one mesh between objects even so, call [`Mesh::with_one_surface_a_vertex`] first.
     #[must_use]
     pub fn new(mesh: impl Into<Shared<Mesh>>) -> Self {
         let mesh = in_parts(mesh.into());

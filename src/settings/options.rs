@@ -10,9 +10,9 @@ named! {
     pub enum HiddenSurfaces, "hidden-surface method" {
         /// Back faces are culled, which is enough for a single convex object.
         BackFaces = "back-faces",
-        /// Far to near. If the plan chooses it: object by object, right because they are convex and lie one behind
-        /// the other. If you ask for it: all faces, sorted by the mean depth of their vertices, which is wrong where
-        /// faces intersect or overlap cyclically.
+        /// Far to near. If the plan chooses it, objects are painted one by one, which is right because they are convex
+        /// and lie one behind the other. If you ask for it, all faces are sorted by the mean depth of their vertices,
+        /// which is wrong where faces intersect or overlap cyclically.
         PainterOrder = "painter",
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
@@ -23,7 +23,7 @@ named! {
 }
 
 named! {
-    /// The arithmetic that takes a mesh to projected vertices. The same raster draws both.
+    /// The arithmetic from a mesh to its projected vertices. The same rasterizer draws the result of either.
     #[derive(Default)]
     pub enum VertexPath, "vertex path" {
         /// Vertices in f32.

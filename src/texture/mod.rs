@@ -128,7 +128,7 @@ impl Texture {
         Ok(Self { texels, colors, width_bits: width.ilog2(), height_bits: height.ilog2() })
     }
 
-    /// Makes a texture of a single texel, with which a surface looks as plain as without a texture.
+    /// Makes a texture of a single texel: a surface with it looks as plain as one without a texture.
     #[must_use]
     pub fn plain(color: Rgb) -> Self {
         Self { texels: vec![0], colors: [color; 256], width_bits: 0, height_bits: 0 }

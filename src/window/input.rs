@@ -42,7 +42,7 @@ pub struct Input {
     shifted: Vec<Key>,
     held: Vec<Key>,
     released: Vec<Key>,
-    /// The seconds since the last frame, for moving things in a game; `as f32` for positions.
+    /// The seconds since the last frame, for moving things in a game; cast it `as f32` for positions.
     pub elapsed: f64,
     /// The characters typed since the last frame, in the user's keyboard layout. Held keys repeat as configured on the
     /// desktop.

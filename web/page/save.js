@@ -35,7 +35,7 @@ export function offerFiles(page) {
   element("copy-link").addEventListener("click", async () => {
     await page.link();
     const files = page.namedFiles();
-    const without = files.length ? ` It cannot carry ${files.join(", ")}: whoever opens it has to drop the files, too.` : "";
+    const without = files.length ? ` It does not include ${files.join(", ")}: whoever opens it must drop those files onto the page, too.` : "";
     try {
       await navigator.clipboard.writeText(location.href);
       setText(element("saved"), `The link is copied.${without}`);

@@ -69,7 +69,7 @@ pub(crate) struct Options {
     /// At least seven rounds are timed; fewer rounds give wider intervals. Before that, finding the errors takes a second or
     /// two per frame.
     ///
-    /// [default: 10, up to 20 until every ratio is known to 2 %]
+    /// [default: 10; up to 20 while a ratio is not yet known to 2 %]
     #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     seconds: Option<f64>,
     /// Only draw the frames whose instructions are counted

@@ -176,7 +176,7 @@ impl Map {
             Some(Err(reason)) => format!("error: {reason}"),
             Some(Ok(Found { sides, .. })) => sides.first().map_or(String::new(), |side| {
                 let share = 100.0 * side.errors.share_within(f64::from(budget));
-                format!("error to lit {:.1}, {share:.2} % within {budget} ({state})", side.figures.max)
+                format!("error against lit {:.1}, {share:.2} % within {budget} ({state})", side.figures.max)
             }),
         }
     }

@@ -578,7 +578,7 @@ mod tests {
         assert!(times[0] != times[1] && times[0] > 0.0, "{times:?}");
         // Drawn again, the picture is the same.
         demo.draw().expect("a legal scene");
-        assert!(demo.title().contains("not drawn again"), "{}", demo.title());
+        assert!(demo.title().contains("not redrawn"), "{}", demo.title());
         assert_eq!(demo.show.halves[0].timing.frame, times[1]);
     }
 }

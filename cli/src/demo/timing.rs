@@ -38,7 +38,7 @@ impl Timing {
 
     /// The time as text, and whether the last frame was drawn.
     pub(super) fn in_words(&self) -> String {
-        format!("{self}{}", if self.is_redrawn { "" } else { ", not drawn again" })
+        format!("{self}{}", if self.is_redrawn { "" } else { ", not redrawn" })
     }
 }
 

@@ -36,7 +36,7 @@ pub(crate) struct ShadingOptions {
     max_error: Option<f32>,
     /// Draw with the smallest error that fits in T milliseconds
     ///
-    /// It is found by timing frames on this machine, up to 16 shades or --max-error. Not with --shading.
+    /// The error is found by timing frames, and is at most 16 shades, or --max-error. Not with --shading.
     #[arg(long, value_name = "T", value_parser = milliseconds, conflicts_with = "shading")]
     max_time: Option<f32>,
 }

@@ -14,7 +14,7 @@
 //! | [`wall`] | no | no | faces +z |
 //! | [`teapot`] | no | no | y up, spout to +x |
 //!
-//! Coordinates are rounded toward zero, so that nothing reaches out of the unit sphere. A quad whose four corners are
+//! Coordinates are rounded toward zero, so that nothing sticks out of the unit sphere. A quad whose four corners are
 //! not coplanar after rounding is split along the diagonal that makes the shape convex, so [`Mesh::is_convex`], which
 //! is exact, holds.
 

@@ -125,7 +125,7 @@ M.figure("loop", (stage, engine) => {
     const carry = s.carry ? ["AL overflowed: the carry went into AH."] : [];
     if (s.over) {
       say(`CX is 0, so jnz does not jump. ${PIXELS} pixels took ${PIXELS * 5} instructions.`,
-        ...(engine ? [same ? " The engine gives the same bytes." : { b: " The engine gives other bytes.", warn: true }] : []));
+        ...(engine ? [same ? " The engine gives the same bytes." : { b: " The engine gives different bytes.", warn: true }] : []));
     } else {
       say("Next: ", { code: CODE[s.at] }, ". ", ...carry);
     }

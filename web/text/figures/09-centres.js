@@ -162,8 +162,8 @@ M.figure("centres", (stage, engine) => {
     };
     name(boards[0], "Exact", M.count(sum(exact), "pixel"));
     name(boards[1], "The period’s code", M.count(sum(period), "pixel"));
-    boards[0].board.describe(`Exact cover: ${sum(exact)} pixels`);
-    boards[1].board.describe(`Cover of the period: ${sum(period)} pixels, ${extra} too many, ${missing} missing`);
+    boards[0].board.describe(`Exact coverage: ${sum(exact)} pixels`);
+    boards[1].board.describe(`Coverage by the period’s code: ${sum(period)} pixels, ${extra} too many, ${missing} missing`);
     const parts = ["The period’s code adds ", { b: M.count(extra, "pixel"), warn: extra > 0 }, " and misses ", { b: String(missing), warn: missing > 0 }, ". "];
     if (kept + left) {
       parts.push(`${M.count(kept + left, "centre lies", "centres lie")} on an edge: the rule keeps ${kept} (full dots) and leaves ${left} (open dots).`);
@@ -171,7 +171,7 @@ M.figure("centres", (stage, engine) => {
     if (engine) {
       const bytes = engine.triangles(Float64Array.from(corners.flatMap(([x, y]) => [x / 256, y / 256, 200])));
       const same = exact.every((b, i) => !!b === bytes[Math.floor(i / COLUMNS) * 320 + i % COLUMNS] > 0);
-      parts.push(same ? " The engine covers the same pixels as the exact grid." : { b: " The engine covers other pixels.", warn: true });
+      parts.push(same ? " The engine covers the same pixels as the exact grid." : { b: " The engine covers different pixels.", warn: true });
     }
     say(...parts);
     boards.forEach((b) => b.board.repaint());

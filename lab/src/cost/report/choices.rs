@@ -11,7 +11,7 @@ use crate::cost::{Claim, OptionRow, Study};
 pub(super) fn options(study: &Study) -> Markup {
     html! {
         @if !study.options.is_empty() { section {
-            h2 { "What else may be chosen" }
+            h2 { "The other choices" }
             p { "One choice at a time, everything else at its default. Ratios are to the first of each group; errors are against exact Gouraud shading over unrounded vertices." }
             (table(study).html())
         } }

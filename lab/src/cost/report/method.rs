@@ -18,12 +18,12 @@ pub(super) fn section(study: &Study) -> Markup {
                 dt { "compiler" } dd { (host.compiler) }
                 dt { "flags" } dd { (host.flags) }
                 dt { "clock" } dd { (host.clock) ", steps of " (time(host.clock_step)) }
-                dt { "frames" } dd { (count(study.frames)) " in a round, all over one turn or the scene’s time" }
+                dt { "frames" } dd { (count(study.frames)) " in a round, spread over one turn or the scene’s duration" }
                 dt { "rounds" } dd { (count(study.rounds)) ", after a warm-up" }
             }
             p {
                 "In every round each shading and each budget draws the same frames, in an order that is shuffled again for each round, so that none is always first or always after the "
-                "same other; much slower ones sit out some rounds. One thread draws, and every frame is drawn, even one that shows nothing new. A time is the median over the rounds; "
+                "same one; much slower ones sit out some rounds. One thread draws, and every frame is drawn, even one that shows nothing new. A time is the median over the rounds; "
                 "a quarter of the rounds are below the lower quartile, a quarter above the upper. A ratio is the median of the ratios within rounds, and its interval holds "
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1, the two may well be equal."
             }

@@ -83,7 +83,7 @@ fn error_chart(study: &Study) -> Markup {
     markup! {
         (chart(description, axes, &points_json(study), Some(&chart_svg(study))))
         p.key {
-            span { "Filled and joined: efficient shadings; none as accurate is surely faster." }
+            span { "Filled and joined: efficient shadings. No shading as accurate is measurably faster." }
             span { "Triangles: budgets, labelled with the accepted error in shades." }
         }
     }

@@ -41,7 +41,7 @@ fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let Some(phong) = phong else {
         return match left {
             left if left.is_finite() => {
-                format!("From light at every pixel it is off by up to {}.", counted_shades(&at_most(left)))
+                format!("It is off from light at every pixel by up to {}.", counted_shades(&at_most(left)))
             }
             _ => "How far it is from light at every pixel is not known.".to_string(),
         };

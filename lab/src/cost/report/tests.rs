@@ -338,7 +338,7 @@ fn a_summary_is_true_of_any_figures() {
         (
             vec![tied(shading(GouraudVintage, 1.01, 9.0, 12.0), Gouraud88Reseeded), done_right()],
             "On torus the old loop, done right, is within 0.6 of 255 shades of exact and as fast as the printed one, as \
-             far as can be told. From light at every pixel it is off by up to 14.6 shades.",
+             far as can be told. It is off from light at every pixel by up to 14.6 shades.",
         ),
         (
             vec![shading(Gouraud88Reseeded, 1.0, 0.0, 0.0), shading(Phong, 5.0, 0.0, 0.0)],
