@@ -82,6 +82,9 @@ const COORDINATES: usize = 4;
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
+/// The same sums rounded to f32, which only loops that a build for size lacks look up.
+const SINGLE_SUMS: usize = if IS_COMPACT { 0 } else { SUMS };
+
 /// A face, and the values of its corners from top to bottom.
 #[derive(Clone, Copy)]
 pub(super) struct FaceCorners<'a> {
@@ -168,7 +171,7 @@ pub(super) struct SpanData {
     pub(super) coordinates: RecordColumns<i32, COORDINATES>,
     sums: RecordColumns<i64, SUMS>,
     /// The sums rounded to f32; not of a face that is walked.
-    single_sums: RecordColumns<f32, SUMS>,
+    single_sums: RecordColumns<f32, SINGLE_SUMS>,
     planes: [FacePlanes8; Batches::COUNT],
 }
 
