@@ -50,3 +50,10 @@ fn all_memory_is_taken_when_a_context_is_made() {
         }
     }
 }
+
+/// A context is made on a stack as large as the header says: its contents are not made there first.
+#[test]
+fn a_context_is_made_on_a_small_stack() {
+    let made = std::thread::Builder::new().stack_size(76 << 10).spawn(|| drop(Memory::new()));
+    made.expect("started").join().expect("made");
+}

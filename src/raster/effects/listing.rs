@@ -8,6 +8,9 @@
 //! linear on the face, and light at every pixel, are computed by the stage that needs them, from the mark and the planes
 //! that set-up leaves for eight faces.
 
+use alloc::boxed::Box;
+use alloc::vec;
+
 use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
 use super::{Buffers, draw_listed};
@@ -172,7 +175,8 @@ pub(super) struct SpanData {
     sums: RecordColumns<i64, SUMS>,
     /// The sums rounded to f32; not of a face that is walked.
     single_sums: RecordColumns<f32, SINGLE_SUMS>,
-    planes: [FacePlanes8; Batches::COUNT],
+    /// Of [`Batches::COUNT`] times eight faces; made on the heap, since stacks may be small.
+    planes: Box<[FacePlanes8]>,
 }
 
 /// The values set up for each face besides its shade.
@@ -247,7 +251,7 @@ impl SpanData {
     pub(super) fn new() -> Self {
         let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
         let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
-        Self { numbers, coordinates, sums, single_sums, planes: <[FacePlanes8; Batches::COUNT]>::default() }
+        Self { numbers, coordinates, sums, single_sums, planes: vec![FacePlanes8::default(); Batches::COUNT].into() }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
