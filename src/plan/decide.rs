@@ -50,7 +50,8 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
     let accuracy = inputs.settings.drawn_accuracy();
     let (shading, max_error) = (accuracy.shading(), accuracy.max_error());
     let is_integer = inputs.settings.is_integer();
-    let (way, reason) = hidden::choose(inputs.scene, inputs.views, inputs.settings.hidden_surfaces, &mut plan.order);
+    let asked = (inputs.settings.hidden_surfaces, is_integer);
+    let (way, reason) = hidden::choose(inputs.scene, inputs.views, asked, &mut plan.order);
     plan.is_integer = is_integer;
     plan.hidden_surfaces = way;
     plan.chosen = reason != Reason::Asked;
@@ -290,7 +291,7 @@ impl Rules<'_> {
     }
 
     fn back_face_culling(&self) -> Decision {
-        if hidden::is_transparent(self.object) {
+        if hidden::is_transparent(self.object, self.is_integer) {
             Decision::off(Reason::SeenThrough)
         } else if self.object.mesh().is_outward() {
             Decision::on(Reason::Closed)

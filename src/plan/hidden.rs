@@ -12,22 +12,22 @@ use crate::scene::{Object, Scene};
 use crate::settings::HiddenSurfaces;
 use crate::view::ObjectView;
 
-/// Returns whether any of an object's materials is transparent.
-pub(super) fn is_transparent(object: &Object) -> bool {
-    object.materials.iter().any(|Material { blend, .. }| *blend != Blend::Opaque)
+/// Returns whether an object is drawn with a transparent material; the 16.16 path draws all of them opaque.
+pub(super) fn is_transparent(object: &Object, is_integer: bool) -> bool {
+    !is_integer && object.materials.iter().any(|Material { blend, .. }| *blend != Blend::Opaque)
 }
 
 /// Chooses the method for `scene`, with the reason. Fills `order` with the objects' indices in drawing order.
 pub(super) fn choose(
     scene: &Scene,
     views: &[ObjectView],
-    asked: Option<HiddenSurfaces>,
+    (asked, is_integer): (Option<HiddenSurfaces>, bool),
     order: &mut Vec<usize>,
 ) -> (HiddenSurfaces, Reason) {
     let objects = scene.objects();
     order.clear();
     order.extend((0..objects.len()).filter(|&i| scene.is_visible(i)));
-    let transparent = order.iter().filter(|&&i| is_transparent(&objects[i])).count();
+    let transparent = order.iter().filter(|&&i| is_transparent(&objects[i], is_integer)).count();
     match asked {
         Some(HiddenSurfaces::ScanLine) if transparent > 0 => {
             return (HiddenSurfaces::DepthBuffer, Reason::ScanLineShowsOneFace);

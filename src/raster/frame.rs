@@ -188,7 +188,7 @@ impl<'a> Frame<'a> {
     /// Splits the frame into bands of `rows_each` rows (at least 1); the last may be shorter.
     pub fn bands(&mut self, rows_each: u32) -> impl Iterator<Item = Frame<'_>> {
         let (width, height, pitch, rows) = (self.width, self.height, self.pitch, self.rows.clone());
-        let rows_each = rows_each.max(1);
+        let rows_each = rows_each.clamp(1, Self::MAX_SIDE);
         // The last chunk may lack the bytes after the last pixel; it still holds `width` bytes.
         self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
             let first = rows.start + band * rows_each;
@@ -231,6 +231,15 @@ mod tests {
         assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..2), Err(RasterError::Band { .. })));
         assert!(matches!(Frame::band(&mut bytes, 8, 4, 8, 2..5), Err(RasterError::Band { .. })));
         assert!(Frame::new(&mut bytes, 1, 8, 9).is_ok(), "the last row needs only its pixels");
+    }
+
+    #[test]
+    fn one_band_may_be_as_high_as_any_number_says() {
+        let mut bytes = [0; 64];
+        let mut frame = Frame::band(&mut bytes, 8, 8, 8, 2..8).expect("legal");
+        for rows_each in [6, 4096, u32::MAX - 1, u32::MAX] {
+            assert_eq!(frame.bands(rows_each).map(|band| band.rows()).collect::<Vec<_>>(), [2..8], "{rows_each}");
+        }
     }
 
     /// Clearing changes neither the bytes between rows nor those after the last, whether or not rows adjoin.

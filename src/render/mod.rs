@@ -183,7 +183,8 @@ impl Renderer {
 
     /// Bounds the error of an object's linear shades against light at every pixel, in the last frame drawn, from
     /// normals, lights and vertices. It is in shades of 1/255 of full intensity, without rounding. `object` is the
-    /// object's index. `None` if the object is flat-shaded, does not exist, or is on the 16.16 path.
+    /// object's index. `None` if the object is flat-shaded, does not exist, has changed since then, or is on the 16.16
+    /// path.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
@@ -225,6 +226,7 @@ impl Renderer {
     /// If nothing has changed since this renderer's last frame, and nobody has modified the machine's memory, that
     /// frame is left as it is.
     ///
+    /// # Errors
     /// A number in the scene is not finite or is out of range, or, on the integer path, does not fit in 16.16 together
     /// with the others. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {

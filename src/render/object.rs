@@ -301,15 +301,15 @@ impl ObjectState {
         self.outputs.columns.triangles(&self.geometry(object))
     }
 
-    /// Its faces, ready to be drawn.
+    /// Its faces, ready to be drawn; `None` without vertices of the object as it is.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &'a ObjectPlan, kernel: Kernel) -> Option<Faces<'a>> {
-        // Without computed vertices there are none.
-        self.made_by.filter(|_| !plan.stages().is_out_of_sight)?;
+        self.made_by.filter(|_| !plan.stages().is_out_of_sight && !self.stale)?;
+        let source = self.source.as_ref().filter(|source| Shared::ptr_eq(&source.mesh, object.shared_mesh()))?;
         Some(Faces {
             shading: plan.shading(),
             stages: plan.stages(),
             geometry: self.geometry(object),
-            view: &self.source.as_ref()?.parameters.view,
+            view: &source.parameters.view,
             lights: self.lights(plan),
             materials: &self.materials,
             columns: &self.outputs.columns,

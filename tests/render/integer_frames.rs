@@ -5,17 +5,17 @@ use std::f64::consts::TAU;
 use crate::floor::{HEIGHT, WIDTH};
 use crate::near_plane::{corners_about_the_near_plane, floors_are_closed, the_visible_part_is_hit};
 use crate::support::odd_views::odd_views;
-use crate::support::scenes::{by_path as renderer, frame_by, triangles_by};
+use crate::support::scenes::{by_path as renderer, frame_by, framed, triangles_by};
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
+use mode13h::light::{Blend, Light};
 use mode13h::mesh::{Mesh, shapes};
 use mode13h::plan::Effect;
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::{Camera, Object, Scene, UpAxis};
-use mode13h::settings::{Shading, VertexPath};
+use mode13h::settings::{HiddenSurfaces, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 use mode13h_conformance::oracle;
@@ -214,6 +214,25 @@ fn every_shading_and_odd_scene_is_drawn_and_counted_alike() {
             assert!(drawn > 1000, "{shading}, {scale}: {drawn}");
             assert!(differ < 100, "{shading}, {scale}: {differ} of {drawn}");
             tried.add(1);
+        }
+    }
+}
+
+/// Transparent materials are drawn opaque, so nothing shows through, whatever the hidden-surface method.
+#[test]
+fn transparent_materials_are_opaque_on_the_integer_path() {
+    for mesh in [shapes::torus(24, 12), shapes::teapot(4)] {
+        let mut scene = framed(mesh);
+        for hidden_surfaces in [None, Some(HiddenSurfaces::ScanLine)] {
+            let mut renderer = renderer(VertexPath::Integer);
+            renderer.settings.hidden_surfaces = hidden_surfaces;
+            let id = scene.object_ids()[0];
+            scene[id].materials[0].blend = Blend::Opaque;
+            let opaque = frame_by(&mut renderer, &scene);
+            scene[id].materials[0].blend = Blend::Mix(128);
+            let transparent = frame_by(&mut renderer, &scene);
+            assert!(transparent.0 == opaque.0, "{hidden_surfaces:?}");
+            assert_eq!(transparent.1.hidden_surfaces, opaque.1.hidden_surfaces);
         }
     }
 }

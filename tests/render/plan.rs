@@ -5,7 +5,7 @@ use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
-use mode13h::mesh::{Mesh, shapes};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::plan::{Effect, Reason};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
@@ -44,6 +44,24 @@ fn differing(a: &[u8], b: &[u8]) -> usize {
 /// Whether any of a scene's objects call for an effect.
 fn called_for(renderer: &Renderer, effect: Effect) -> bool {
     renderer.plan().is_on_anywhere(effect)
+}
+
+/// The state left from the last frame is not mixed with a mesh that has changed since.
+#[test]
+fn a_mesh_that_has_changed_since_the_last_frame_has_no_linear_error() {
+    let cube = shapes::cube();
+    let of_triangle = (0..cube.triangles().len()).map(|i| (i % 2) as u16).collect();
+    let surfaces = vec![Surface::default(); 2];
+    let two = cube.clone().with_surfaces(surfaces, of_triangle).expect("a surface for each triangle");
+    let mut scene = scenes::framed(cube);
+    let (_, _, mut renderer) = draw(&scene, |_| ());
+    assert!(renderer.linear_error(&scene, 0).is_some());
+    let id = scene.object_ids()[0];
+    scene[id].set_mesh(two);
+    assert_eq!(renderer.linear_error(&scene, 0), None);
+    renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
+    assert_eq!(renderer.linear_error(&scene, 0), None);
+    assert!(!renderer.rows(&scene).is_empty());
 }
 
 #[test]
