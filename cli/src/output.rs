@@ -79,10 +79,16 @@ pub(crate) fn finish_files_when_interrupted() {
 /// to it. The file is whole even if the program is interrupted meanwhile.
 pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, Failure> {
     read_files::spare(path)?;
-    let _writing = WRITING.read().unwrap_or_else(PoisonError::into_inner);
+    let _writing = (!is_stream(path)).then(|| WRITING.read().unwrap_or_else(PoisonError::into_inner));
     let written = write().map_err(Into::into)?;
     read_files::note(path, "an output of this command");
     Ok(written)
+}
+
+/// Returns whether this is a device or a pipe. Nothing waits for one when the program is interrupted: it has no whole to
+/// be kept, and a pipe may never be read.
+fn is_stream(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// Writes bytes to a file, under the rule of [`file`].
@@ -95,7 +101,8 @@ pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// program ends as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
-    let writing = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
+    let waits = !path.is_some_and(is_stream);
+    let writing = waits.then(|| WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner));
     let result = write();
     drop(writing);
     while is_interrupted() {

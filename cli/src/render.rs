@@ -416,6 +416,7 @@ fn timed_frames(options: &Options, motion: &Motion, stage: &Turntable, kernel: K
     let Options { shading, drawing, .. } = options;
     let frames = motion.frames;
     let mut renderer = shading.renderer(drawing, kernel);
+    shading.note_ignored(&renderer);
     let (Some(max_time), Some(mut pace)) = (shading.max_time(), shading.pace(&renderer)) else {
         return Ok(Vec::new());
     };

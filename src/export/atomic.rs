@@ -140,12 +140,16 @@ pub fn write_atomically(
 }
 
 /// Tests whether [`write_atomically`] could write a file of this name, apart from a full disk, by
-/// creating and removing a temporary file. An existing file is left alone.
+/// creating and removing a temporary file. An existing file is left alone; a device or a pipe is not tested.
 ///
 /// # Errors
 ///
 /// [`ExportError`], the one that `write_atomically` would return.
 pub fn check_writable(path: impl AsRef<Path>) -> Result<(), ExportError> {
+    // Opening a pipe would wait for its reader, who would then see its end.
+    if is_stream(path.as_ref()) {
+        return Ok(());
+    }
     AtomicFile::create(path.as_ref()).map(drop)
 }
 
@@ -229,6 +233,11 @@ impl Write for AtomicFile {
     fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
     }
+}
+
+/// Returns whether this is an existing device or pipe.
+fn is_stream(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
 
 /// The directory of a file with this name.

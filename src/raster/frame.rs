@@ -238,7 +238,8 @@ mod tests {
         let mut bytes = [0; 64];
         let mut frame = Frame::band(&mut bytes, 8, 8, 8, 2..8).expect("legal");
         for rows_each in [6, 4096, u32::MAX - 1, u32::MAX] {
-            assert_eq!(frame.bands(rows_each).map(|band| band.rows()).collect::<Vec<_>>(), [2..8], "{rows_each}");
+            let mut bands = frame.bands(rows_each).map(|band| band.rows());
+            assert_eq!((bands.next(), bands.next()), (Some(2..8), None), "{rows_each}");
         }
     }
 

@@ -130,7 +130,8 @@ pub struct Settings {
     /// The number of fractional bits of projected vertices: 8, or fewer, to which they are rounded
     /// once more, half up. 0 puts vertices on whole pixels, so that a slowly moving model wobbles.
     /// Points made by clipping keep their 8 bits, and so does the 16.16 path; the stated errors of
-    /// shadings, and the errors that budgets prove, are for 8.
+    /// shadings, and the errors that budgets prove, are for 8. Rounding may dent a convex object, on
+    /// which hidden-surface methods then differ by some pixels.
     pub vertex_bits: Option<u8>,
     /// Whether to light every material on three channels and draw it in the nearest colours,
     /// coloured or not. This suits palettes of few colours: there dithering reaches textures, too.

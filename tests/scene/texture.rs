@@ -353,6 +353,7 @@ fn levels_take_a_third_of_the_texels() {
         assert_eq!(Levels::deepest(bits, 0), bits);
     }
     assert_eq!(Levels::length(3, 1), 4 + 2 + 1);
+    assert_eq!(Levels::length(70, 3), Levels::length(8, 3));
     let bytes: Vec<u8> = (0..7).collect();
     let levels = Levels::new(&bytes, 3, 1).expect("4 × 1, 2 × 1 and 1 × 1");
     assert!(levels.get(0).is_none());

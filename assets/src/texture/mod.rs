@@ -319,7 +319,8 @@ fn indexed(info: &Info<'_>, rows: &[u8]) -> Result<Decoded, LoadErrorKind> {
         .chunks_exact(row_bytes)
         .flat_map(|row| (0..width).map(move |x| row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xFF >> (8 - bits))))
         .collect();
-    let colors = indexed::colors(info.palette.as_deref().unwrap_or_default());
+    let palette = info.palette.as_deref().ok_or_else(|| LoadErrorKind::Picture("it has no palette".into()))?;
+    let colors = indexed::colors(palette);
     let opacities = info.trns.as_deref().unwrap_or_default();
     let was_transparent = indices.iter().any(|&index| opacities.get(usize::from(index)).is_some_and(|&o| o < 255));
     Indexed { width: info.width, height: info.height, indices, colors, was_transparent }.into_decoded()

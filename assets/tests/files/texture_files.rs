@@ -70,6 +70,13 @@ fn an_indexed_png_keeps_its_indices_and_a_palette_of_its_own_shows_them() {
     assert_eq!(Lut64K::shades(&Palette::from_colors(own), texture.colors()).get(255, 1), 3);
     write_png(&path, (3, 1), ColorType::Indexed, BitDepth::Eight, &plte, &[1, 3, 2]);
     assert_eq!(load(&path).expect("a texture").width(), 4);
+    // Without its palette, which a chunk of 12 bytes with a length, a name and a sum holds, there are no colours.
+    let mut bytes = fs::read(&path).expect("read");
+    let at = bytes.windows(4).position(|name| name == b"PLTE").expect("a palette") - 4;
+    bytes.drain(at..at + 12 + plte.len());
+    fs::write(&path, bytes).expect("written");
+    let error = load(&path).expect_err("no palette").to_string();
+    assert!(error.ends_with("not a picture that can be read: it has no palette"), "{error}");
 }
 
 #[test]

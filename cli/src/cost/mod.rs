@@ -11,7 +11,7 @@ use std::time::Instant;
 use clap::Args;
 use indicatif::ProgressBar;
 use mode13h::scene::Scene;
-use mode13h::settings::Shading;
+use mode13h::settings::{Shading, VertexPath};
 use mode13h::span::Kernel;
 use mode13h_lab::cost::{self, Settings, Step, Study, Subject, report};
 use serde::Serialize;
@@ -95,6 +95,10 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { input, out, force, open, json, frames, instructions, seconds, counted, drawing, .. } = options;
     let shadings = if options.shadings.is_empty() { Shading::ALL.to_vec() } else { options.shadings.clone() };
     let mut kernel = drawing.kernel()?;
+    let is_integer = drawing.renderer(kernel).settings.vertex_path == Some(VertexPath::Integer);
+    if let Some(shading) = options.shadings.iter().find(|shading| is_integer && shading.in_integers() != **shading) {
+        return Err(Failure::words(format!("--shadings {shading}: not with --arithmetic fixed, which lacks it")));
+    }
     let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;

@@ -82,6 +82,23 @@ impl ShadingOptions {
         self.max_time.filter(|_| knows_budgets).map(|milliseconds| pace(milliseconds, max_error))
     }
 
+    /// Names the options that the 16.16 path of this renderer ignores.
+    pub(crate) fn note_ignored(&self, renderer: &Renderer) {
+        if renderer.settings.vertex_path != Some(VertexPath::Integer) {
+            return;
+        }
+        let shading = self.shading.filter(|shading| shading.in_integers() != *shading);
+        let ignored = [
+            shading.map(|shading| format!("--shading {shading}")),
+            self.max_error.map(|_| "--max-error".to_string()),
+            self.max_time.map(|_| "--max-time".to_string()),
+        ];
+        let ignored: Vec<String> = ignored.into_iter().flatten().collect();
+        if !ignored.is_empty() {
+            output::note(format_args!("ignored, because vertices are computed in 16.16: {}", ignored.join(", ")));
+        }
+    }
+
     /// A renderer with the settings of the command line.
     pub(crate) fn renderer(&self, drawing: &Drawing, kernel: Kernel) -> Renderer {
         let mut renderer = drawing.renderer(kernel);
@@ -91,6 +108,7 @@ impl ShadingOptions {
 
     /// Finds the error for this scene if frames have to fit in a time, prints it, and has the renderer draw within it.
     pub(crate) fn settle(&self, renderer: &mut Renderer, scene: &Scene) -> Result<(), Failure> {
+        self.note_ignored(renderer);
         let (Some(max_time), Some(mut pace)) = (self.max_time, self.pace(renderer)) else { return Ok(()) };
         calibrate((renderer, &mut pace), scene, &mut Vga::new(), clock())?;
         let accuracy = pace.accuracy();

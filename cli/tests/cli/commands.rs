@@ -657,6 +657,24 @@ fn f4_what_was_read_is_never_overwritten() {
     folder.succeed("render cube -o box.png");
 }
 
+/// What the 16.16 path lacks is named, not ignored without a word.
+#[test]
+fn options_that_16_16_ignores_are_named() {
+    let folder = Folder::new();
+    let render = "render torus --arithmetic fixed -q -o x.png --force";
+    for (words, ignored) in [
+        ("--shading phong", "--shading phong"),
+        ("--max-error 1", "--max-error"),
+        ("--max-error 1 --max-time 5", "--max-error, --max-time"),
+        ("--shading gouraud-16.16", ""),
+    ] {
+        let said = folder.run(&format!("{render} {words}"));
+        let line = format!("mode13h: ignored, because vertices are computed in 16.16: {ignored}\n");
+        assert!(said.status.success(), "{words}");
+        assert_eq!(String::from_utf8_lossy(&said.stderr), if ignored.is_empty() { "" } else { &line }, "{words}");
+    }
+}
+
 /// A command writes only files of its own kind, and never overwrites another file that it has written itself.
 #[test]
 fn f4_what_is_of_another_kind_is_not_overwritten() {
@@ -873,6 +891,28 @@ fn a_film_has_its_figures() {
     let folder = Folder::new();
     assert_eq!(folder.said("render cube -o x.gif --frames 3 --stats").lines().count(), 3);
     assert_eq!(folder.names(), ["x.gif"]);
+}
+
+/// A pipe that nobody reads can be waited for without end, but not after an interruption.
+#[cfg(unix)]
+#[test]
+fn f4_writing_to_a_pipe_that_nobody_reads_is_interrupted() {
+    for (words, pipe) in [
+        ("render torus -o x.png", "x.png"),
+        ("render torus --frames 9 -o x.gif", "x.gif"),
+        ("palette grey -o x.gpl", "x.gpl"),
+    ] {
+        let folder = Folder::new();
+        assert!(Command::new("mkfifo").arg(folder.path(pipe)).status().expect("started").success());
+        let mut child = folder.program(words).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
+        std::thread::sleep(std::time::Duration::from_secs(1));
+        assert!(child.try_wait().expect("waited").is_none(), "{words} did not wait");
+        let output = signalled(child, "-TERM");
+        let said = String::from_utf8_lossy(&output.stderr).into_owned();
+        assert_eq!(output.status.code(), Some(130), "{words}: {said}");
+        assert!(said.ends_with("mode13h: interrupted\n"), "{said}");
+        assert_eq!(folder.names(), [pipe]);
+    }
 }
 
 #[cfg(unix)]

@@ -229,7 +229,11 @@ fn the_text_begins_with_what_a_newcomer_wants_to_know() {
         }
         assert_eq!(text.contains("best single shading"), has_budgets, "{text}");
         assert_eq!(page.contains("<h2>The budget</h2>"), has_budgets);
+        // Nor have they light at every pixel, which the default shading would replace.
+        assert_eq!(text.contains("\n  phong "), has_budgets, "{text}");
     }
+    let words = "cost cube --frames 1 --seconds 0 --arithmetic fixed --shadings flat,phong";
+    folder.fails(words, 2, "--shadings phong: not with --arithmetic fixed, which lacks it");
 }
 
 /// A study that cannot be written when it is finished, although it could when it began, is saved elsewhere.

@@ -116,13 +116,17 @@ pub fn measure(
         return Err(CostError::NoFrames);
     }
     let spent = |share: f64| Spent { clock: *clock, seconds: share * seconds, at_most: *at_most, seed: *seed };
-    let mut ways = Configuration::shadings_and_budgets(shadings);
-    if renderer().settings.vertex_path == Some(VertexPath::Integer) {
-        // The integer path supports no budget.
-        ways.retain(|way| !matches!(way.kind, Kind::Budget(_)));
+    let mut shadings = shadings.clone();
+    let is_integer = renderer().settings.vertex_path == Some(VertexPath::Integer);
+    if is_integer {
+        // The integer path would draw others by the default shading.
+        shadings.retain(|shading| shading.in_integers() == *shading);
     }
+    let mut ways = Configuration::shadings_and_budgets(&shadings);
+    // Nor does it support a budget.
+    ways.retain(|way| !is_integer || !matches!(way.kind, Kind::Budget(_)));
     if *with_choices {
-        ways.extend(choices(frames, renderer, shadings)?);
+        ways.extend(choices(frames, renderer, &shadings)?);
     }
     let court = Referee { ways: &ways, base: renderer, frames, steps };
     let findings = court.judge(&|share| progress(Step::Errors, share))?;

@@ -85,7 +85,7 @@ const COORDINATES: usize = 4;
 /// Sums at a span's first pixel for texture coordinates linear on the face: two numerators, and the divisor.
 const SUMS: usize = 3;
 
-/// The same sums rounded to f32, which only loops that a build for size lacks look up.
+/// Sums that are kept in f32, too: none in a build for size, which lacks the loops that look them up.
 const SINGLE_SUMS: usize = if IS_COMPACT { 0 } else { SUMS };
 
 /// A face, and the values of its corners from top to bottom.
@@ -175,7 +175,7 @@ pub(super) struct SpanData {
     sums: RecordColumns<i64, SUMS>,
     /// The sums rounded to f32; not of a face that is walked.
     single_sums: RecordColumns<f32, SINGLE_SUMS>,
-    /// Of [`Batches::COUNT`] times eight faces; made on the heap, since stacks may be small.
+    /// [`Batches::COUNT`] times eight faces; made on the heap, since stacks may be small.
     planes: Box<[FacePlanes8]>,
 }
 

@@ -138,9 +138,12 @@ impl<'a> Levels<'a> {
         if ubits > vbits { ubits } else { vbits }
     }
 
-    /// The number of texels of all levels from 1 on: for a square texture a third of its own, rounded down.
+    /// The number of texels of all levels from 1 on: for a square texture a third of its own, rounded down. More bits
+    /// than [`Texels::MAX_BITS`] count as [`Texels::MAX_BITS`].
     #[must_use]
     pub const fn length(ubits: u32, vbits: u32) -> usize {
+        let most = Texels::MAX_BITS;
+        let (ubits, vbits) = (if ubits < most { ubits } else { most }, if vbits < most { vbits } else { most });
         let (mut length, mut level) = (0, 1);
         while level <= Self::deepest(ubits, vbits) {
             length += 1 << (ubits.saturating_sub(level) + vbits.saturating_sub(level));
