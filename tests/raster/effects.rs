@@ -517,11 +517,15 @@ fn draw_in_columns(
     while left < WIDTH as u32 {
         let right = (left + random.within(1, 8) as u32).min(WIDTH as u32);
         let clip = Rect { x0: left, x1: right, ..SIZE.rect() };
-        SIZE.draw(&mut pixels, SIZE.rows(), |frame| {
-            let buffer = DepthBuffer::new(&mut depths, &frame).expect("long enough");
-            let mut raster = Raster::new(frame).with_kernel(kernel).with_clip(clip).with_depth(buffer);
-            raster.triangle_with_effects(vertices, attributes, look);
-        });
+        // Row by row, in bands that end where the row does.
+        for y in SIZE.rows() {
+            let depths = &mut depths[y as usize * WIDTH as usize..];
+            SIZE.draw(&mut pixels, y..y + 1, |frame| {
+                let buffer = DepthBuffer::new(depths, &frame).expect("long enough");
+                let mut raster = Raster::new(frame).with_kernel(kernel).with_clip(clip).with_depth(buffer);
+                raster.triangle_with_effects(vertices, attributes, look);
+            });
+        }
         left = right;
     }
     assert!(pixels.iter().zip(&hidden).all(|(&byte, &is_hidden)| !is_hidden || byte == BEFORE), "{vertices:?}");

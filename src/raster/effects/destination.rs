@@ -162,7 +162,8 @@ impl Masked<'_> {
     fn test<S: Lanes8>(&mut self, s: S, spans: &Spans<'_>, i: usize, mut pixels: DrawnPixels) -> Option<DrawnPixels> {
         let DrawnPixels { at, length, .. } = pixels;
         pixels.is_tested = true;
-        if IS_COMPACT || length > LANES || at + LANES > self.pixels.len() {
+        // A part of a block may begin at its last pixel, and has eight pixels, too.
+        if IS_COMPACT || length > LANES || at + 2 * LANES > self.pixels.len() {
             return Some(pixels);
         }
         let Some(cells) = &mut self.cells else {

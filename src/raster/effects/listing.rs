@@ -175,8 +175,8 @@ pub(super) struct SpanData {
     sums: RecordColumns<i64, SUMS>,
     /// The sums rounded to f32; not of a face that is walked.
     single_sums: RecordColumns<f32, SINGLE_SUMS>,
-    /// [`Batches::COUNT`] times eight faces; made on the heap, since stacks may be small.
-    planes: Box<[FacePlanes8]>,
+    /// Made on the heap, since stacks may be small.
+    planes: Box<[FacePlanes8; Batches::COUNT]>,
 }
 
 /// The values set up for each face besides its shade.
@@ -251,7 +251,8 @@ impl SpanData {
     pub(super) fn new() -> Self {
         let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
         let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
-        Self { numbers, coordinates, sums, single_sums, planes: vec![FacePlanes8::default(); Batches::COUNT].into() }
+        let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_default();
+        Self { numbers, coordinates, sums, single_sums, planes }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
