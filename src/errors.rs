@@ -12,4 +12,12 @@ macro_rules! debug_as_display {
     };
 }
 
-pub(crate) use debug_as_display;
+/// Implements `Debug` as `Display`, and `Error` for an error without a source.
+macro_rules! error_type {
+    ($Error:ty) => {
+        crate::errors::debug_as_display!($Error);
+        impl core::error::Error for $Error {}
+    };
+}
+
+pub(crate) use {debug_as_display, error_type};

@@ -53,9 +53,7 @@ impl fmt::Display for UnknownName {
     }
 }
 
-crate::errors::debug_as_display!(UnknownName);
-
-impl core::error::Error for UnknownName {}
+crate::errors::error_type!(UnknownName);
 
 /// Defines an enum with a name for each variant, and `ALL`, `name`, `Display` and `FromStr`.
 macro_rules! named {

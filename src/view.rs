@@ -365,13 +365,8 @@ impl ObjectView {
             (from.max(0.0) as u32, libm::ceil(to).min(size[i]).max(0.0) as u32)
         };
         let ((x0, x1), (y0, y1)) = (pixels(0), pixels(1));
-        ScreenBounds {
-            nearest,
-            farthest,
-            crosses_near,
-            leaves_screen: crosses_near || !(inside(0) && inside(1)),
-            seen: Rect { x0, y0, x1, y1 },
-        }
+        let leaves_screen = crosses_near || !(inside(0) && inside(1));
+        ScreenBounds { nearest, farthest, crosses_near, leaves_screen, seen: Rect { x0, y0, x1, y1 } }
     }
 
     /// Where a vertex is on the screen, in pixels, and its distance along the view.

@@ -1,6 +1,5 @@
 //! Pictures for the exporters: bytes, size, palette, and the shape of a pixel.
 
-use std::error::Error;
 use std::fmt;
 
 use crate::palette::{Palette, Rgb};
@@ -132,6 +131,4 @@ impl fmt::Display for PictureError {
     }
 }
 
-crate::errors::debug_as_display!(PictureError);
-
-impl Error for PictureError {}
+crate::errors::error_type!(PictureError);

@@ -155,11 +155,12 @@ impl Light {
 
     /// Checks the light; the error says what is wrong.
     pub(crate) fn check(&self) -> Result<(), &'static str> {
+        let not_finite = match self {
+            Self::Sun { .. } => "its direction, intensity and colour must be finite",
+            Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
+        };
         if !(self.intensity().is_finite() && self.color().iter().all(|c| c.is_finite())) {
-            return Err(match self {
-                Self::Sun { .. } => "its direction, intensity and colour must be finite",
-                Self::Lamp { .. } => "its position, intensity, range and colour must be finite",
-            });
+            return Err(not_finite);
         }
         // The sum of an infinity and a number of the opposite sign would be NaN.
         let is_held = |share: f32| (share * self.intensity()).is_finite();
@@ -167,13 +168,9 @@ impl Light {
             return Err("its intensity times its colour must be finite");
         }
         match *self {
-            Self::Sun { direction, .. } if !direction.is_finite() => {
-                Err("its direction, intensity and colour must be finite")
-            }
+            Self::Sun { direction, .. } if !direction.is_finite() => Err(not_finite),
             Self::Sun { direction, .. } if direction == Vec3::ZERO => Err("its direction must not be zero"),
-            Self::Lamp { position, range, .. } if !(position.is_finite() && range.is_finite()) => {
-                Err("its position, intensity, range and colour must be finite")
-            }
+            Self::Lamp { position, range, .. } if !(position.is_finite() && range.is_finite()) => Err(not_finite),
             Self::Lamp { range, .. } if range <= 0.0 => Err("its range must be above 0"),
             Self::Lamp { cone: Some(cone), .. } => cone.check(),
             _ => Ok(()),

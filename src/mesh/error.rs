@@ -76,6 +76,4 @@ impl fmt::Display for MeshError {
     }
 }
 
-crate::errors::debug_as_display!(MeshError);
-
-impl core::error::Error for MeshError {}
+crate::errors::error_type!(MeshError);

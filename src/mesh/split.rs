@@ -29,29 +29,23 @@ impl Mesh {
         let mut links: Vec<(u32, u32)> = vec![(NONE, NONE); mesh.positions.len()];
         for (triangle, &surface) in mesh.triangles.iter_mut().zip(&mesh.triangle_surfaces) {
             for index in triangle {
-                let mut at = *index;
-                loop {
-                    let (owner, next) = links[at as usize];
-                    if owner == NONE {
-                        links[at as usize].0 = u32::from(surface);
-                    } else if owner != u32::from(surface) {
-                        if next != NONE {
-                            at = next;
-                            continue;
-                        }
-                        // With at most three vertices per triangle the count stays below 2³³. In a mesh so large that
-                        // the index does not fit, the triangle keeps the first surface's vertex.
-                        let Ok(new) = u32::try_from(mesh.positions.len()) else { break };
-                        links[at as usize].1 = new;
-                        links.push((u32::from(surface), NONE));
-                        mesh.positions.push(mesh.positions[at as usize]);
-                        mesh.normals.push(mesh.normals[at as usize]);
-                        if let Some(texcoords) = &mut mesh.texcoords {
-                            texcoords.push(texcoords[at as usize]);
-                        }
-                        at = new;
+                let (mut at, is_open) = (*index, |owner: u32| owner == NONE || owner == u32::from(surface));
+                while !is_open(links[at as usize].0) && links[at as usize].1 != NONE {
+                    at = links[at as usize].1;
+                }
+                if is_open(links[at as usize].0) {
+                    links[at as usize].0 = u32::from(surface);
+                } else if let Ok(new) = u32::try_from(mesh.positions.len()) {
+                    // With at most three vertices per triangle the count stays below 2³³. In a mesh so large that the
+                    // index does not fit, the triangle keeps another surface's vertex.
+                    links[at as usize].1 = new;
+                    links.push((u32::from(surface), NONE));
+                    mesh.positions.push(mesh.positions[at as usize]);
+                    mesh.normals.push(mesh.normals[at as usize]);
+                    if let Some(texcoords) = &mut mesh.texcoords {
+                        texcoords.push(texcoords[at as usize]);
                     }
-                    break;
+                    at = new;
                 }
                 *index = at;
             }

@@ -227,14 +227,8 @@ impl Plan {
             for effect in Effect::ALL {
                 let Decision { on, choice, reason } = plan[effect];
                 let reason = reason.text(scene, index) + &findings.text(effect, on);
-                rows.push(Row {
-                    index,
-                    object: reason::name_of(scene, index),
-                    effect,
-                    on,
-                    choice: choice.name(),
-                    reason,
-                });
+                let (object, choice) = (reason::name_of(scene, index), choice.name());
+                rows.push(Row { index, object, effect, on, choice, reason });
             }
         }
         rows

@@ -58,7 +58,7 @@ impl<D: Cell> Raster<'_, D> {
         all: PickedTriangles<'_>,
         interpolation: Interpolation,
         SpanScratch(list): &mut SpanScratch,
-        shaded: Option<&mut ShadedData>,
+        mut shaded: Option<&mut ShadedData>,
     ) -> DrawStats {
         let mut drawn = DrawStats::default();
         let (layout, fits) = (self.layout(), self.fits_lists());
@@ -78,7 +78,6 @@ impl<D: Cell> Raster<'_, D> {
         };
         let level = self.kernel.simd_level();
         let (mut first, count) = (0, picks.picks.len());
-        let mut shaded = shaded;
         while first < count {
             let together = Pick::count_batched(&picks.picks[first..]);
             if together == 0 {
@@ -104,9 +103,7 @@ impl<D: Cell> Raster<'_, D> {
         }
         drawn
     }
-}
 
-impl<D: Cell> Raster<'_, D> {
     /// Draws a triangle with linear shades that is too large for set-up in f64: walks down its edges, and lists its
     /// rows.
     #[inline(never)]

@@ -12,8 +12,8 @@ pub const PLANES: usize = 5;
 /// The maximum number of corners: three, and at most one more for every plane.
 pub const MAX_CORNERS: usize = 3 + PLANES;
 
-/// The corners of a convex polygon before the perspective division, in either vertex path's
-/// coordinate type.
+/// The corners of a convex polygon: before the perspective division, in either vertex path's coordinate type, or
+/// projected.
 #[derive(Clone, Copy, Debug)]
 pub struct Corners<C> {
     corners: [C; MAX_CORNERS],
@@ -38,8 +38,8 @@ impl<C: Copy> Corners<C> {
     /// Projects every corner to a vertex; `None` if any corner has no projection.
     #[must_use]
     pub fn project(&self, mut vertex: impl FnMut(&C) -> Option<Vertex>) -> Option<Clipped> {
-        let mut polygon = Clipped { vertices: [Vertex::default(); MAX_CORNERS], count: self.count };
-        for (place, corner) in polygon.vertices.iter_mut().zip(self.as_slice()) {
+        let mut polygon = Corners { corners: [Vertex::default(); MAX_CORNERS], count: self.count };
+        for (place, corner) in polygon.corners.iter_mut().zip(self.as_slice()) {
             *place = vertex(corner)?;
         }
         Some(polygon)
@@ -83,11 +83,7 @@ pub fn clip<C: Copy, D: Copy + PartialOrd + Default>(
 }
 
 /// A clipped polygon, convex except for the rounding of its corners.
-#[derive(Clone, Copy, Debug)]
-pub struct Clipped {
-    vertices: [Vertex; MAX_CORNERS],
-    count: usize,
-}
+pub type Clipped = Corners<Vertex>;
 
 impl Clipped {
     /// The triangles of the fan around this corner, as indices of their corners.
@@ -96,18 +92,11 @@ impl Clipped {
         (2..self.count).map(move |i| [corner(0), corner(i - 1), corner(i)])
     }
 
-    /// The corners.
-    #[cfg(feature = "alloc")]
-    pub(crate) fn vertices(&self) -> &[Vertex] {
-        // At most `MAX_CORNERS`.
-        &self.vertices[..self.count]
-    }
-
     /// The triangle with these corners.
     #[must_use]
     pub fn triangle(&self, corners: [usize; 3]) -> [Vertex; 3] {
         // Below `count`, which is at most `MAX_CORNERS`.
-        corners.map(|i| self.vertices[i % MAX_CORNERS])
+        corners.map(|i| self.corners[i % MAX_CORNERS])
     }
 
     /// Twice the area, in the units and with the sign of [`doubled_area`].

@@ -227,12 +227,6 @@ impl<'a> Picks<'a> {
     pub(crate) fn get(&self, k: usize) -> Pick {
         Pick(self.picks[k])
     }
-
-    /// The single shade of pick `k`, if its triangle has one.
-    #[inline(always)]
-    pub(crate) fn flat_shade(&self, k: usize) -> Option<U8F8> {
-        if self.flat.is_empty() { None } else { Some(self.flat[k][0]) }
-    }
 }
 
 /// Triangles, and which of them are drawn.
@@ -253,7 +247,7 @@ impl<'a> PickedTriangles<'a> {
     #[inline]
     pub(crate) fn vertices(&self, k: usize) -> [Vertex; 3] {
         let pick = self.picks.get(k);
-        let flat = self.picks.flat_shade(k);
+        let flat = self.picks.flat.get(k).map(|flat| flat[0]);
         three(self.triangles.corners(pick), |i| self.triangles.columns.vertex(i, pick.side(), flat))
     }
 }

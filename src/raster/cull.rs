@@ -7,7 +7,7 @@ use super::fill_rule::{cover_none_of_four, first_centre_of_each};
 use super::frame::Rect;
 use super::pick::{CHUNK, MAX_AREA_4X4, MAX_COLUMNS, MAX_HEIGHT, MAX_ROWS, MAX_WIDTH, Pick};
 use crate::fixed::HAS_F64;
-use crate::lanes::{LANES, NUMBERS, three};
+use crate::lanes::{LANES, NUMBERS, each, three};
 use crate::simd::{Lanes8, Packed, compiled_for_each_level};
 
 /// The longest box side, in pixels, of a triangle whose pixels are tested one by one.
@@ -89,11 +89,7 @@ fn cull_eights_by<S: Lanes8>(s: S, [a, b, c]: [Eights<'_>; 3], clip: Rect) -> Cu
 
 #[inline(always)]
 fn load<S: Lanes8>(s: S, at: &[ScreenPos; LANES]) -> S::I64 {
-    let mut lanes = [0; LANES];
-    for lane in 0..LANES {
-        lanes[lane] = u64::from(at[lane]).cast_signed();
-    }
-    s.load_i64(&lanes)
+    s.load_i64(&each!(lane => u64::from(at[lane]).cast_signed()))
 }
 
 /// Culls up to 64 triangles by facing alone. Each visible one may cover something, and is drawn
@@ -174,11 +170,6 @@ impl CullMasks {
         self.large |= (u64::from(large) & are_triangles) << first;
         self.crosses |= (u64::from(crosses) & are_triangles) << first;
         self.unbatched |= (u64::from(unbatched) & are_triangles) << first;
-    }
-
-    /// All triangles as seen from the front.
-    pub(crate) fn front_only(self) -> Self {
-        Self { back: 0, ..self }
     }
 
     /// The pick of triangle `at` of the 64, whose index is `index`.

@@ -87,6 +87,4 @@ impl fmt::Display for RasterError {
     }
 }
 
-crate::errors::debug_as_display!(RasterError);
-
-impl core::error::Error for RasterError {}
+crate::errors::error_type!(RasterError);

@@ -350,16 +350,10 @@ impl<D: Cell> RowTarget for WhereNearer<'_, D> {
 #[inline]
 pub(super) fn starts(row: &Row, shade: &ShadePlane, reseeded: bool, mut span: impl FnMut(Range<usize>, u16)) {
     if !reseeded {
-        return span(row.range(), linear_start(row, shade));
+        return span(row.range(), start_at(shade, row, row.x0, false));
     }
     let advance = |start: u16, pixels: i32| start.wrapping_add(shade.step().wrapping_mul(pixels as u16));
     pieces(row, |seed, x, end| span(x as usize..end as usize, advance(shade.start(seed, row.y), x - seed)));
-}
-
-/// The shade at the first pixel drawn of a row that is not reseeded.
-#[inline]
-pub(super) fn linear_start(row: &Row, shade: &ShadePlane) -> u16 {
-    start_at(shade, row, row.x0, false)
 }
 
 /// The shade at column `x` of a row: exact if it is reseeded there, otherwise continued from the row's origin.

@@ -391,13 +391,8 @@ impl<S: Lanes8> RowCursor8<S> {
         }
         let parts = Parts { row: ends.left, end: ends.right, seed: ends.left, start: ends.left };
         let fill = shades.fill_of(s, lane, setup, &ends, &parts);
-        let spans = Spans8 {
-            at: s.add_i32(self.at, left),
-            cell: s.add_i32(self.cell, left),
-            length: s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0)),
-            fill,
-            z,
-        };
+        let length = s.select_i32(is_row, s.sub_i32(right, left), s.splat_i32(0));
+        let spans = Spans8 { at: s.add_i32(self.at, left), cell: s.add_i32(self.cell, left), length, fill, z };
         self.at = s.add_i32(self.at, s.splat_i32(list.pitch));
         if has_depths {
             self.cell = s.add_i32(self.cell, s.splat_i32(list.width));
@@ -597,13 +592,9 @@ pub(super) fn list_pieces<S: Lanes8, P: Shades8, const DEPTHS: bool>(
             }
             let moved = s.sub_i32(s.low_bits(start), s.low_bits(ends.left));
             let length = s.sub_i32(s.low_bits(s.min(right, end)), s.low_bits(start));
-            Spans8 {
-                at: s.add_i32(rows.at, moved),
-                cell: s.add_i32(rows.cell, moved),
-                length: s.select_i32(is_row, length, s.splat_i32(0)),
-                fill,
-                z: if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z },
-            }
+            let length = s.select_i32(is_row, length, s.splat_i32(0));
+            let z = if has_depths { s.add_i64(rows.z, s.mul_i64(s.to_i64(moved), dz)) } else { rows.z };
+            Spans8 { at: s.add_i32(rows.at, moved), cell: s.add_i32(rows.cell, moved), length, fill, z }
         };
         list.append(s, &spans, depth_steps(setup, i, has_depths));
         left = end;

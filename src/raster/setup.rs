@@ -456,7 +456,7 @@ fn depth_gradient<S: Lanes8>(s: S, n: S::F64, area: S::F64, inverse: S::F64) -> 
     let integer = s.mul_add(n, inverse, magic);
     let rest = s.neg_mul_add(s.sub(integer, magic), area, n);
     let part = s.mul_add(s.mul_add(rest, s.splat_f64(16_777_216.0), s.splat_f64(0.25)), inverse, magic);
-    // The magic number's bits are shifted out of the first sum. Wrapping is intended: see `raster::depth`.
+    // The magic number's bits are shifted out of the first sum. Wrapping is intended: see `reference::depth`.
     s.add_i64(s.shl_i64(s.bits(integer), 24), s.sub_i64(s.bits(part), s.bits(magic)))
 }
 

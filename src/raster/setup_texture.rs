@@ -494,12 +494,8 @@ impl PerspectivePlanes8 {
     #[inline(always)]
     pub(super) fn sums(&self, lane: usize, [u, v, d]: [f64; 3]) -> PerspectiveSums<f64> {
         let (lane, [du, dv, dd]) = (lane % LANES, &self.step);
-        PerspectiveSums {
-            numerators: [[u, du[lane]], [v, dv[lane]]],
-            divisors: [d, dd[lane]],
-            base: [self.base[0][lane], self.base[1][lane]],
-            margin: 0,
-        }
+        let base = [self.base[0][lane], self.base[1][lane]];
+        PerspectiveSums { numerators: [[u, du[lane]], [v, dv[lane]]], divisors: [d, dd[lane]], base, margin: 0 }
     }
 
     /// The sums rounded to f32, if quotients may be taken in f32: see [`singles_margin`].
@@ -511,12 +507,8 @@ impl PerspectivePlanes8 {
             return None;
         }
         let ([u, v, d], [du, dv, dd]) = (sums(), &self.single_step);
-        Some(PerspectiveSums {
-            numerators: [[u, du[lane]], [v, dv[lane]]],
-            divisors: [d, dd[lane]],
-            base: [self.base[0][lane], self.base[1][lane]],
-            margin,
-        })
+        let base = [self.base[0][lane], self.base[1][lane]];
+        Some(PerspectiveSums { numerators: [[u, du[lane]], [v, dv[lane]]], divisors: [d, dd[lane]], base, margin })
     }
 }
 

@@ -115,16 +115,7 @@ impl ShadedFaces<'_> {
         SortedTriangle::new(&self.of.vertices(self.batches.first + face))
     }
 
-    /// The perspective-correct bytes of a span, followed by arbitrary ones to fill blocks of eight. Returns false if
-    /// estimates cannot decide all of them.
-    #[inline(always)]
-    fn estimate<S: Lanes8>(s: S, steps: &[Steps8], face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) -> bool {
-        let (batch, lane) = Batches::of_face(face as usize);
-        let [dn, dd] = &steps[batch].sums;
-        fill_estimated_blocks(s, row, [n, dn[lane]], [d, dd[lane]])
-    }
-
-    /// Computes the bytes of [`estimate`](Self::estimate) in exact arithmetic.
+    /// Computes the perspective-correct bytes of a span, which estimates cannot decide, in exact arithmetic.
     #[cold]
     #[inline(never)]
     fn exact_bytes(&self, span: Span, face: u32, bytes: &mut Bytes) {
@@ -134,24 +125,6 @@ impl ShadedFaces<'_> {
         // In a frame: below 4,096.
         let (x, y) = ((span.at % pitch) as i32, (first_row + span.at / pitch) as i32);
         plane.fill(x, y, &mut bytes[..(span.length as usize).min(PIECE)]);
-    }
-
-    /// The bytes of a span in f32, followed by arbitrary ones to fill blocks of eight.
-    #[cfg(feature = "alloc")]
-    #[inline(always)]
-    fn quotients(steps: &[Steps8], face: u32, [n, d]: [f64; 2], row: (&mut [u8], usize)) {
-        // The triangle in the lower half.
-        let (batch, lane) = Batches::of_face((face & 0xFFFF) as usize);
-        let mut singles = [0.0; 4];
-        for (single, bits) in singles.iter_mut().zip(&steps[batch].words) {
-            *single = f32::from_bits(bits[lane].cast_unsigned());
-        }
-        let [dn, dd, least, greatest] = singles;
-        // Rounded once: dividing by 256 changes no bit.
-        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn], [d as f32, dd]);
-        // The index of the first pixel, relative to the pixel where the sums are.
-        let first = face.cast_signed() >> 16;
-        fill_float_blocks(row, first, n_and_step, d_and_step, [least, greatest]);
     }
 }
 
@@ -295,16 +268,31 @@ impl<'a> Shaded8<'a> {
                 let record = span.fill as usize;
                 let face = numbers.of(record, 0).cast_unsigned();
                 let sum = |i: usize| f64::from_bits(starts.of(record, i).cast_unsigned());
-                let sums = [sum(0), sum(1)];
+                let [n, d] = [sum(0), sum(1)];
                 let bytes = all_bytes.of_mut(k - first);
+                // The span's bytes, followed by arbitrary ones to fill blocks of eight.
                 let row = (&mut bytes[..], span.length as usize);
+                // The lowest six bits, in f32 too.
+                let (batch, lane) = Batches::of_face(face as usize);
                 if IS_ESTIMATE {
-                    if !ShadedFaces::estimate(s, steps, face, sums, row) {
+                    let [dn, dd] = &steps[batch].sums;
+                    if !fill_estimated_blocks(s, row, [n, dn[lane]], [d, dd[lane]]) {
                         self.listed.exact_bytes(span, face, bytes);
                     }
                 } else {
                     #[cfg(feature = "alloc")]
-                    ShadedFaces::quotients(steps, face, sums, row);
+                    {
+                        let mut singles = [0.0; 4];
+                        for (single, bits) in singles.iter_mut().zip(&steps[batch].words) {
+                            *single = f32::from_bits(bits[lane].cast_unsigned());
+                        }
+                        let [dn, dd, least, greatest] = singles;
+                        // Rounded once: dividing by 256 changes no bit.
+                        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn], [d as f32, dd]);
+                        // The index of the first pixel, relative to the pixel where the sums are.
+                        let first = face.cast_signed() >> 16;
+                        fill_float_blocks(row, first, n_and_step, d_and_step, [least, greatest]);
+                    }
                 }
             }
             let of = (

@@ -9,7 +9,7 @@ use super::interpolation::Interpolation;
 use super::reference::cover::{Row, SortedTriangle};
 use super::reference::depth::DepthPlane;
 use super::reference::shade::{RESEED, ShadePlane};
-use super::row_shader::{InRow, RowShader, WhereNearer, linear_start};
+use super::row_shader::{InRow, RowShader, WhereNearer, start_at};
 use super::vertex::Vertex;
 use super::vintage::VintageTriangle;
 use crate::fixed::{HAS_F64, IS_COMPACT};
@@ -135,7 +135,7 @@ impl<'a, D: Cell> Raster<'a, D> {
                 Interpolation::Gouraud88 => {
                     return self.fill_rows(&triangle, |row| {
                         let plane = plane.get_or_insert_with(|| ShadePlane::new(&triangle));
-                        (linear_start(row, plane), plane.step())
+                        (start_at(plane, row, row.x0, false), plane.step())
                     });
                 }
                 Interpolation::Flat(index) => return self.fill_rows(&triangle, |_| (u16::from(index) << 8, 0)),

@@ -2,7 +2,7 @@
 
 use super::batches::SpanScratch;
 use super::columns::{Columns, PickedTriangles, Picks, ScreenPos, Triangles};
-use super::cull::{PickList, cull, cull_eights, pick};
+use super::cull::{CullMasks, PickList, cull, cull_eights, pick};
 use super::depth::Cell;
 use super::draw_stats::DrawStats;
 use super::frame::Rect;
@@ -134,8 +134,8 @@ pub(super) fn cull_corners<const N: usize, const PICKS: usize>(
         let masks = cull_eights(level, at.each_ref().map(|corner| &corner.as_chunks().0[eights.clone()]), clip);
         // From 1 to 64.
         let are_triangles = u64::MAX >> (CHUNK - in_chunk);
-        // Below the capacity.
-        pick(level, &mut list, first as u32, &masks.front_only(), masks.covers & are_triangles);
+        // Below the capacity. All are seen from the front.
+        pick(level, &mut list, first as u32, &CullMasks { back: 0, ..masks }, masks.covers & are_triangles);
     }
     list
 }
@@ -328,12 +328,8 @@ impl<D: Cell> Raster<'_, D> {
             let picks = list.as_slice();
             let flat = one_shade.as_ref().map_or(&[][..], |shades| &shades[..picks.len()]);
             let triangles = Triangles { columns, indices: of_list, by_corner: None };
-            drawn += self.picks(
-                PickedTriangles { triangles: &triangles, picks: Picks { picks, flat } },
-                drawn_by(interpolation),
-                &mut spans,
-                None,
-            );
+            let all = PickedTriangles { triangles: &triangles, picks: Picks { picks, flat } };
+            drawn += self.picks(all, drawn_by(interpolation), &mut spans, None);
         }
         drawn
     }
@@ -355,12 +351,8 @@ impl<D: Cell> Raster<'_, D> {
         pick(self.kernel.simd_level(), &mut list, 0, &masks, 1);
         let picks = Picks { picks: list.as_slice(), flat: &[] };
         let triangles = Triangles { columns, indices: &INDICES, by_corner: None };
-        self.picks(
-            PickedTriangles { triangles: &triangles, picks },
-            drawn_by(interpolation),
-            &mut SpanScratch::default(),
-            None,
-        )
+        let all = PickedTriangles { triangles: &triangles, picks };
+        self.picks(all, drawn_by(interpolation), &mut SpanScratch::default(), None)
     }
 }
 

@@ -188,7 +188,7 @@ mod tests {
             let corner = |at| Corner { at, shade: 0.0, vertex: None, attributes: Attributes::default() };
             if let Some((polygon, _)) = clip(&view, progressions, at.map(corner)) {
                 left.set(left.get() + 1);
-                let all = |beyond: fn(&Vertex) -> bool| polygon.vertices().iter().all(beyond);
+                let all = |beyond: fn(&Vertex) -> bool| polygon.as_slice().iter().all(beyond);
                 let is_beyond = all(|v| v.x().to_bits() < 0)
                     || all(|v| v.x().to_bits() > 320 << 8)
                     || all(|v| v.y().to_bits() < 0)

@@ -55,9 +55,7 @@ impl fmt::Display for RenderError {
     }
 }
 
-crate::errors::debug_as_display!(RenderError);
-
-impl core::error::Error for RenderError {}
+crate::errors::error_type!(RenderError);
 
 impl RenderError {
     internal! {

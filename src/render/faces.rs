@@ -137,11 +137,7 @@ impl<'a> Faces<'a> {
 
 compiled_for_each_level! {
     /// The shades of picked flat-shaded faces, each lit with its own normal: suns, no highlights, and one channel.
-    fn light_faces[const BOTH: bool][BOTH](
-        faces: &Faces<'_>,
-        picks: &[u32],
-        flat: &mut [[U8F8; 3]],
-    ) = light_faces_by;
+    fn light_faces[const BOTH: bool][BOTH](faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]]) = light_faces_by;
 }
 
 #[inline(always)]
@@ -174,11 +170,8 @@ fn light_faces_by<S: F32Lanes8, const BOTH: bool>(s: S, faces: &Faces<'_>, picks
 
 compiled_for_each_level! {
     /// The shades of picked flat-shaded faces, each lit at its centre with its own normal: all light, on one channel.
-    fn light_faces_fully[][](
-        faces: &Faces<'_>,
-        picks: &[u32],
-        flat: &mut [[U8F8; 3]],
-    ) = light_faces_fully_by, up to AVX2;
+    fn light_faces_fully[][](faces: &Faces<'_>, picks: &[u32], flat: &mut [[U8F8; 3]])
+        = light_faces_fully_by, up to AVX2;
 }
 
 #[inline(always)]

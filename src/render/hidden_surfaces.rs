@@ -47,7 +47,7 @@ pub(super) struct Scratch {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DeferredFace {
     object: u32,
-    /// A [`Pick`](crate::raster::pick::Pick).
+    /// A [`Pick`].
     pick: u32,
     look: Look,
     /// Its single shade, or its three channels, if faces are lit.
@@ -61,11 +61,6 @@ impl DeferredFace {
             // Fewer than 2³² objects.
             Self { object: object as u32, pick, look: run.look, flat: run.picks.flat.get(k).copied() }
         })
-    }
-
-    /// Returns whether it may be drawn in one run with another.
-    fn goes_with(&self, other: &Self) -> bool {
-        (self.object, self.look, self.flat.is_some()) == (other.object, other.look, other.flat.is_some())
     }
 
     /// The pick of this face alone.
@@ -112,7 +107,8 @@ impl Painter<'_, '_> {
         };
         far_to_near(faces.iter().map(depth), order);
         let mut drawn = DrawStats::default();
-        for run in order.chunk_by(|(_, a), (_, b)| faces[*a].goes_with(&faces[*b])) {
+        let kind = |&(_, i): &(u64, usize)| (faces[i].object, faces[i].look, faces[i].flat.is_some());
+        for run in order.chunk_by(|a, b| kind(a) == kind(b)) {
             let first = faces[run[0].1];
             let triangles = first.triangles(scene, cache, added);
             for part in run.chunks(CHUNK) {

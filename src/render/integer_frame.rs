@@ -6,8 +6,7 @@ use super::{RenderError, Renderer, Screen, VertexPath};
 use crate::fixed::I16F16;
 use crate::integer::{Camera, Object, Sun};
 use crate::scene::Scene;
-use crate::settings::HiddenSurfaces;
-use crate::settings::Shading;
+use crate::settings::{HiddenSurfaces, Shading};
 
 /// A frame of the 16.16 path before its vertices are computed.
 #[derive(Clone, Debug)]

@@ -101,18 +101,8 @@ impl Pace {
     }
 
     fn in_milliseconds(max_time: f32, max_error: f32) -> Self {
-        Self {
-            max_time,
-            max_error,
-            costs: [f32::INFINITY; ERRORS.len() + 1],
-            at: 0,
-            times: [0.0; BLOCK],
-            drawn: 0,
-            frames: 0,
-            held: 0,
-            patience: PATIENCE,
-            is_trial: false,
-        }
+        let (costs, times, patience) = ([f32::INFINITY; ERRORS.len() + 1], [0.0; BLOCK], PATIENCE);
+        Self { max_time, max_error, costs, at: 0, times, drawn: 0, frames: 0, held: 0, patience, is_trial: false }
     }
 
     /// Errors smaller than the greatest.

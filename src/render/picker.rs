@@ -319,14 +319,9 @@ impl Faces<'_> {
     fn look(&self, surface: u16, shading: FaceShading, is_decided: bool) -> Look {
         let material = &self.materials[usize::from(surface)];
         let effects = material.has_effects || (is_decided && shading.lights_pixels());
-        Look {
-            surface: if effects { surface } else { 0 },
-            shading,
-            effects,
-            transparent: material.blend != Blend::Opaque,
-            one_shade: !effects && !is_decided && self.has_one_shade(),
-            added: false,
-        }
+        let (surface, transparent) = (if effects { surface } else { 0 }, material.blend != Blend::Opaque);
+        let one_shade = !effects && !is_decided && self.has_one_shade();
+        Look { surface, shading, effects, transparent, one_shade, added: false }
     }
 
     /// The look of all faces, if they share one.
@@ -474,7 +469,7 @@ impl Faces<'_> {
             return;
         }
         // Indices ascend.
-        let vertices = polygon.vertices().iter().zip(corners.as_slice());
+        let vertices = polygon.as_slice().iter().zip(corners.as_slice());
         let first = vertices.map(|(vertex, corner)| added.vertex(vertex, &corner.attributes)).min().unwrap_or(0);
         for part in polygon.part_corners() {
             stats.drawn += 1;

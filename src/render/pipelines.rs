@@ -97,8 +97,18 @@ impl Pipelines<'_> {
                 tables: tables_of_image,
             });
         let blends = material.blend != Blend::Opaque || plan.stages().neutral_blend;
+        let lights_pixels = plan.stages().lights_pixels() && shading.lights_pixels();
+        let source = match (shading, state.normal_table(surface)) {
+            _ if !lights_pixels => ShadeSource::Shaded(shading.interpolation()),
+            (FaceShading::By(Shading::PhongTable), Some(table)) if channels.is_none() => {
+                ShadeSource::NormalTable(table)
+            }
+            (FaceShading::By(_), _) => ShadeSource::Lit(&light),
+            (FaceShading::PhongEvery(spacing), _) => ShadeSource::LitEvery(spacing, &light),
+            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(material, channels.is_some())),
+        };
         draw(&PixelPipeline {
-            source: source(plan, shading, channels.is_some(), state.normal_table(surface), &light),
+            source,
             channels,
             dither: match dither {
                 Dither::Neutral => {
@@ -114,22 +124,4 @@ impl Pipelines<'_> {
             keeps_depth: material.blend == Blend::Opaque,
         })
     }
-}
-
-fn source<'a>(
-    plan: &ObjectPlan,
-    shading: FaceShading,
-    channels: bool,
-    table: Option<&'a [u8; 65_536]>,
-    light: &'a PixelLight<'a>,
-) -> ShadeSource<'a> {
-    if plan.stages().lights_pixels() && shading.lights_pixels() {
-        return match (shading, table) {
-            (FaceShading::By(Shading::PhongTable), Some(table)) if !channels => ShadeSource::NormalTable(table),
-            (FaceShading::By(_), _) => ShadeSource::Lit(light),
-            (FaceShading::PhongEvery(spacing), _) => ShadeSource::LitEvery(spacing, light),
-            (FaceShading::Quadratic, _) => ShadeSource::Curved(limits(light.material, channels)),
-        };
-    }
-    ShadeSource::Shaded(shading.interpolation())
 }

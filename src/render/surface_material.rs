@@ -30,6 +30,7 @@ impl SurfaceMaterial {
             material.environment.as_deref().filter(|_| stages.has_environment() && texture_size.is_none()).map(size);
         let blend = if stages.is_transparent() { material.blend } else { Blend::Opaque };
         let channels = stages.has_channels();
+        let has_highlight = stages.has_highlights() && material.is_specular();
         let image = texture_size.is_some() || environment_size.is_some();
         let everywhere =
             stages.has_fog() || channels || stages.dither != Dither::None || stages.lit_at == LitAt::Pixels;
@@ -39,11 +40,7 @@ impl SurfaceMaterial {
             reflectance: Reflectance {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
-                specular: if stages.has_highlights() && material.is_specular() {
-                    f64::from(material.specular)
-                } else {
-                    0.0
-                },
+                specular: f64::from(if has_highlight { material.specular } else { 0.0 }),
                 shininess: f64::from(material.shininess),
                 color: material.color.map(f64::from),
                 highlight: material.highlight.map(f64::from),

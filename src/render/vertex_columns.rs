@@ -132,11 +132,8 @@ impl AddedTriangles {
 
     /// The triangles.
     pub(super) fn triangles(&self) -> Triangles<'_> {
-        Triangles {
-            columns: self.vertices.columns(LitColumn::Values(&self.lit)),
-            indices: &self.indices,
-            by_corner: None,
-        }
+        let columns = self.vertices.columns(LitColumn::Values(&self.lit));
+        Triangles { columns, indices: &self.indices, by_corner: None }
     }
 
     /// Keeps all added triangles until the frame is drawn.

@@ -34,14 +34,9 @@ impl Camera {
         // at most f32::MAX, so even a sphere of that size is in front of the eye.
         let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW.to_radians() as f32 / 2.0));
         let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
-        let eye = centre + Vec3::Z * distance;
-        Self {
-            eye: eye.clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX)),
-            target: centre,
-            up: Vec3::Y,
-            field_of_view: Self::FIELD_OF_VIEW,
-            near: Self::near_for(distance),
-        }
+        let eye = (centre + Vec3::Z * distance).clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
+        let near = Self::near_for(distance);
+        Self { eye, target: centre, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, near }
     }
 
     /// The near distance that suffices for a target at this distance: 1/128 of it.

@@ -177,13 +177,9 @@ impl Viewpoint {
             return None;
         }
         let near = f64::from(Camera::near_for(distance as f32)).min((z + distance - front) / 2.0);
-        Some(Camera {
-            eye: narrow(added(target, towards, distance)),
-            target: narrow(target),
-            up: self.up,
-            field_of_view: self.field_of_view,
-            near: (near as f32).max(f32::MIN_POSITIVE),
-        })
+        let near = (near as f32).max(f32::MIN_POSITIVE);
+        let (eye, target) = (narrow(added(target, towards, distance)), narrow(target));
+        Some(Camera { eye, target, up: self.up, field_of_view: self.field_of_view, near })
     }
 }
 

@@ -215,16 +215,12 @@ impl SpanList {
         if self.count == 0 {
             return;
         }
+        let mut nearer = 0;
         match cells {
-            Some(cells) if DEPTHS => {
-                let nearer = kernel.fill_spans_nearer(pixels, cells, self);
-                self.nearer = self.nearer.wrapping_add(nearer);
-            }
+            Some(cells) if DEPTHS => nearer = kernel.fill_spans_nearer(pixels, cells, self),
             _ => kernel.fill_spans(pixels, self),
         }
-        // At most 2⁷ at a time; the sum is modulo 2³², like those of `DrawStats`.
-        self.drawn = self.drawn.wrapping_add(self.count as u32);
-        self.count = 0;
+        self.clear(nearer);
     }
 
     /// Number of spans.
@@ -250,8 +246,9 @@ impl SpanList {
     }
 
     /// Empties the list after its spans have been drawn and `nearer` pixels have been written.
+    #[inline(always)]
     pub(crate) fn clear(&mut self, nearer: u32) {
-        // As in `draw_by`.
+        // At most 2⁷ at a time; the sum is modulo 2³², like those of `DrawStats`.
         self.drawn = self.drawn.wrapping_add(self.count as u32);
         self.nearer = self.nearer.wrapping_add(nearer);
         self.count = 0;

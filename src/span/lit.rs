@@ -22,10 +22,7 @@ use crate::simd::compiled_for_each_level;
 #[inline]
 #[must_use]
 pub fn interpolate(first: u16, a: &[f64; 6], da: &[f64; 6], d: f64, dd: f64) -> Points {
-    let mut indices = [0.0; LANES];
-    for (lane, index) in (0_u16..).zip(&mut indices) {
-        *index = f64::from(first) + f64::from(lane);
-    }
+    let indices = each!(lane => f64::from(first) + lane as f64);
     divide(&numerators(&indices, a, da, d, dd))
 }
 

@@ -67,9 +67,7 @@ impl fmt::Display for TextureError {
     }
 }
 
-crate::errors::debug_as_display!(TextureError);
-
-impl core::error::Error for TextureError {}
+crate::errors::error_type!(TextureError);
 
 /// A rectangle of texels, each an index into the texture's own colours.
 ///

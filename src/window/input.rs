@@ -87,23 +87,9 @@ impl Input {
 
     /// Returns whether the user did anything since `before`, or holds a key or button.
     pub(super) fn differs(&self, before: &Input) -> bool {
-        let Input {
-            pressed,
-            shifted: _,
-            held,
-            released: _,
-            elapsed: _,
-            typed,
-            mouse,
-            buttons,
-            buttons_pressed: _,
-            buttons_released: _,
-            drag,
-            wheel,
-        } = self;
-        !(pressed.is_empty() && held.is_empty() && typed.is_empty())
-            || (*mouse, *buttons) != (before.mouse, before.buttons)
-            || (*drag, *wheel) != ((0.0, 0.0), 0.0)
+        !(self.pressed.is_empty() && self.held.is_empty() && self.typed.is_empty())
+            || (self.mouse, self.buttons) != (before.mouse, before.buttons)
+            || (self.drag, self.wheel) != ((0.0, 0.0), 0.0)
     }
 }
 

@@ -10,7 +10,6 @@ mod input;
 mod key;
 mod screen;
 
-use std::error::Error;
 use std::fmt;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -209,18 +208,7 @@ impl Window {
         window.set_input_callback(Box::new(events.clone()));
         let now = Instant::now();
         let (input, picture) = (Input::default(), Stretched::default());
-        Window {
-            window,
-            events,
-            input,
-            has_input: false,
-            picture,
-            opened: now,
-            now,
-            before: now,
-            begun: now,
-            sent: now,
-        }
+        Self { window, events, input, has_input: false, picture, opened: now, now, before: now, begun: now, sent: now }
     }
 
     /// Sets the title.
@@ -384,9 +372,7 @@ impl fmt::Display for WindowError {
     }
 }
 
-crate::errors::debug_as_display!(WindowError);
-
-impl Error for WindowError {}
+crate::errors::error_type!(WindowError);
 
 #[cfg(test)]
 mod tests {

@@ -172,10 +172,8 @@ impl Builder {
                 new
             }));
         }
-        let triangles = self.triangles.into_iter().filter(|t| {
-            let [a, b, c] = t.map(|vertex| points[vertex as usize]);
-            a != b && b != c && c != a
-        });
+        let triangles =
+            self.triangles.into_iter().filter(|t| !topology::is_line(t.map(|vertex| points[vertex as usize])));
         Mesh::assemble(positions, normals, triangles.map(|t| t.map(|v| renamed[v as usize])).collect())
     }
 }

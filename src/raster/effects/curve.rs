@@ -45,12 +45,8 @@ impl Curve {
         let [ma, mb, mc] = three(corners, |corner| shade(corner[channel + 3]));
         let bend = |from: f64, middle: f64, to: f64| 2.0 * (from - 2.0 * middle + to);
         let [da, db, dc] = [bend(fb, ma, fc), bend(fc, mb, fa), bend(fa, mc, fb)];
-        Self {
-            corners: [fa, fb, fc],
-            bends: [da, db, dc],
-            step: fa * sa + fb * sb + fc * sc,
-            square: -(da * (sb * sc) + db * (sc * sa) + dc * (sa * sb)),
-        }
+        let square = -(da * (sb * sc) + db * (sc * sa) + dc * (sa * sb));
+        Self { corners: [fa, fb, fc], bends: [da, db, dc], step: fa * sa + fb * sb + fc * sc, square }
     }
 
     /// a, b and c along a row from a pixel with these weights, which change by `[sa, sb, sc]` per

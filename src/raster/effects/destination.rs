@@ -16,7 +16,10 @@ pub(super) trait Destination {
     const SHOWS_PAIRS: bool = true;
 
     /// Where the pixels of span `i` begin, how many there are, and how many leading pixels are skipped.
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32);
+    #[inline(always)]
+    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
+        spans.in_frame(i)
+    }
 
     /// All pixels.
     fn all(&mut self) -> &mut [u8];
@@ -135,11 +138,6 @@ pub(super) struct InFrame<'a>(pub(super) &'a mut [u8]);
 
 impl Destination for InFrame<'_> {
     #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        spans.in_frame(i)
-    }
-
-    #[inline(always)]
     fn all(&mut self) -> &mut [u8] {
         self.0
     }
@@ -186,11 +184,6 @@ impl Masked<'_> {
 
 impl Destination for Masked<'_> {
     const SHOWS_PAIRS: bool = false;
-
-    #[inline(always)]
-    fn span(&self, spans: &Spans<'_>, i: usize) -> (usize, usize, u32) {
-        spans.in_frame(i)
-    }
 
     #[inline(always)]
     fn all(&mut self) -> &mut [u8] {

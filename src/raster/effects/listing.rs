@@ -47,12 +47,6 @@ use crate::span::texture::Levels;
 pub(super) struct Mark(pub(super) [u32; 2]);
 
 impl Mark {
-    /// A span of the only face.
-    fn of_walked([number, last]: [i32; 2], [column, row]: [i32; 2]) -> Self {
-        // The numbers are below 128 and 8,192, column and row below 65,536.
-        Self([number << 6 | last << 13, column | row << 16].map(i32::cast_unsigned))
-    }
-
     #[inline(always)]
     pub(super) const fn face(self) -> usize {
         (self.0[0] & 63) as usize
@@ -374,7 +368,7 @@ impl<'a> EffectSpans<'a> {
     pub(super) fn walk(&mut self, k: usize, depth_base: u32) -> SortedTriangle {
         let corners = FaceCorners::new(&self.listed.faces, k);
         let triangle = corners.triangle;
-        let Wanted { texture, last_level, .. } = self.listed.wanted;
+        let Wanted { texture, last_level, values, .. } = self.listed.wanted;
         let planes = &mut self.listed.data.planes[0];
         // Columns and rows are counted from the frame's first.
         (planes.column, planes.row) = ([0; LANES], [0; LANES]);
@@ -397,10 +391,7 @@ impl<'a> EffectSpans<'a> {
             face: corners,
             shade: ShadePlane::of_values(&triangle, triangle.shades()),
             depth: DepthPlane::new(&triangle).raised_by(depth_base),
-            values: self.listed.wanted.values.map(|value| {
-                let value = value?;
-                Some(ShadePlane::of_values(&triangle, corners.value(value)))
-            }),
+            values: values.map(|value| Some(ShadePlane::of_values(&triangle, corners.value(value?)))),
             texture,
             levels,
         });
@@ -433,22 +424,20 @@ impl<'a> EffectSpans<'a> {
             let fill = record as u32 | ((x - seed) as u32) << 8;
             if list.push(at, (end - x) as usize, fill, [z << 8, depth.step() << 8]) {
                 let number = (seed - row.origin) / RESEED;
-                let mark = Mark::of_walked([number, row.last - seed], [seed, row.y]);
-                let ([a, b], [v0, v1, v2, v3]) = (mark.0, of_slots);
-                self.listed.data.numbers.set(record, [a, b, shade, v0, v1, v2, v3].map(u32::cast_signed));
+                // A `Mark` of the only face: the numbers are below 128 and 8,192, column and row below 65,536.
+                let [a, b] = [number << 6 | (row.last - seed) << 13, seed | row.y << 16].map(i32::cast_unsigned);
+                let (data, [v0, v1, v2, v3]) = (&mut *self.listed.data, of_slots);
+                data.numbers.set(record, [a, b, shade, v0, v1, v2, v3].map(u32::cast_signed));
                 match texture {
                     Some(WalkedTexture::Affine([u, v])) => {
                         let starts = [u, v].map(|plane| plane.start(seed, row.y));
                         // Modulo 2³²: texels repeat.
                         let steps = [u, v].map(|plane| plane.step as u32);
-                        self.listed
-                            .data
-                            .coordinates
-                            .set(record, [starts[0], starts[1], steps[0], steps[1]].map(u32::cast_signed));
+                        data.coordinates.set(record, [starts[0], starts[1], steps[0], steps[1]].map(u32::cast_signed));
                     }
                     Some(WalkedTexture::OnFace(coordinates)) => {
                         let sums = coordinates.sums(seed, row.y).map(|sum| sum.to_bits().cast_signed());
-                        self.listed.data.sums.set(record, sums);
+                        data.sums.set(record, sums);
                     }
                     None => {}
                 }

@@ -120,15 +120,8 @@ impl<'a> Spans<'a> {
     /// Takes all spans of a list, for a stage that needs no offsets into a buffer.
     #[inline]
     pub(super) fn all(listed: &'a ListedFaces<'_>, list: &'a SpanList) -> Self {
-        Self {
-            listed,
-            data: &*listed.data,
-            list,
-            depths: list.depths(),
-            first: 0,
-            count: list.count(),
-            pixels: &NO_OFFSETS,
-        }
+        let (depths, count) = (list.depths(), list.count());
+        Self { listed, data: &*listed.data, list, depths, first: 0, count, pixels: &NO_OFFSETS }
     }
 
     #[inline(always)]
@@ -393,13 +386,7 @@ fn fill_by_shader_at<S: Lanes8>(s: S, spans: &Spans<'_>, shaded: Shaded, out: &m
 
 compiled_for_each_level! {
     #[inline(never)]
-    fn fill_linear_at_best[][](
-        level: Kernel,
-        kernel: Kernel,
-        spans: &Spans<'_>,
-        shaded: Shaded,
-        out: &mut [u8],
-    ) {
+    fn fill_linear_at_best[][](level: Kernel, kernel: Kernel, spans: &Spans<'_>, shaded: Shaded, out: &mut [u8]) {
         fill_linear(kernel, spans, shaded, out)
     }
 }

@@ -343,14 +343,8 @@ fn show_parts<S: F32Lanes8, T: Tint, D: Destination>(
         }
         let (part, n) = ((spans, i, before as u32), next.min(end) - first);
         let image = (all[shown as usize % LEVELS], shown);
-        show_part(
-            part,
-            pixels.part(before, n),
-            first,
-            (image, OffsetLanes::of_level(s, image)),
-            tint,
-            (&mut *to, lanes),
-        );
+        let image = (image, OffsetLanes::of_level(s, image));
+        show_part(part, pixels.part(before, n), first, image, tint, (&mut *to, lanes));
         first += n;
     }
 }
@@ -454,11 +448,8 @@ fn exact_eight(
     // Quotients in f64, where those in f32 could not.
     if HAS_F64 && !IS_COMPACT {
         let (range, mut is_sure) = ((first, span.len.min(first + LANES)), true);
-        let eight_in_f64 =
-            perspective_along(OffsetLanes::of_level(BASELINE, (texels, level)), spans.sums(i), range, |_, _| {
-                is_sure = false
-            })
-            .next();
+        let lanes = OffsetLanes::of_level(BASELINE, (texels, level));
+        let eight_in_f64 = perspective_along(lanes, spans.sums(i), range, |_, _| is_sure = false).next();
         if is_sure {
             BASELINE.store_i32(eight_in_f64, eight);
             return;
@@ -493,9 +484,8 @@ mod tests {
     use crate::raster::reference::cover::SortedTriangle;
     use crate::raster::reference::depth::DepthPlane;
     use crate::raster::reference::quotient::Divisor;
-    use crate::raster::reference::texture::AffinePlane;
-    use crate::raster::reference::texture::{depth, exact};
-    use crate::raster::reference::weights::Weights;
+    use crate::raster::reference::texture::{AffinePlane, depth};
+    use crate::raster::reference::weights::{Weights, exact};
     use crate::raster::vertex::Vertex;
     use crate::span::list::SpanList;
     use crate::span::target::Target;

@@ -43,13 +43,8 @@ impl Edge {
         let (x, rest) = denominator.div_rem_floor(numerator + denominator.get() - 1);
         let (step, step_rest) = denominator.div_rem_floor(i64::from(dx) * 256);
         // x within ±4,097, step within ±2²¹, the remainders below the denominator, at most 2²⁹.
-        Self {
-            x: x as i32,
-            rest: rest as i32,
-            step: step as i32,
-            step_rest: step_rest as i32,
-            denominator: denominator.get() as i32,
-        }
+        let of = |n: i64| n as i32;
+        Self { x: of(x), rest: of(rest), step: of(step), step_rest: of(step_rest), denominator: of(denominator.get()) }
     }
 
     /// Steps to the next row.

@@ -36,7 +36,7 @@
 //! Here only the clamp keeps bytes in range, not rounding in one direction as in [`shade`](super::shade).
 
 use super::cover::{Row, SortedTriangle};
-use super::weights::{Weights, in_f64};
+use super::weights::{Weights, exact, in_f64};
 use crate::lanes::three;
 
 /// The shades of a triangle in f32.
@@ -67,16 +67,12 @@ impl FloatPlane {
     pub(in crate::raster) fn of_values(triangle: &SortedTriangle, shades: [i64; 3]) -> Self {
         let depths = three(triangle.vertices.each_ref(), |v| i64::from(v.depth().max(1)));
         let weights = Weights::new(triangle);
-        let step = |products: [i128; 3]| {
-            // Differences of areas: whole numbers within 2³⁰.
-            let [a, b, c] = three(weights.per_column, i128::from);
-            a * products[0] + b * products[1] + c * products[2]
-        };
+        // 48 bits.
+        let products = three([0, 1, 2], |i| depths[i] * shades[i]);
         // In 1/256 shade; at most 2⁸⁰, which f32 can represent.
-        let dn = step(three([0, 1, 2], |i| i128::from(depths[i]) * i128::from(shades[i]))) as f32 / 256.0;
-        let dd = step(three(depths, i128::from)) as f32;
-        // 48 bits and 32.
-        let values = three([0, 1, 2], |i| [(depths[i] * shades[i]) as f64 / 256.0, depths[i] as f64]);
+        let dn = exact(weights.per_column, products) as f32 / 256.0;
+        let dd = exact(weights.per_column, depths) as f32;
+        let values = three([0, 1, 2], |i| [products[i] as f64 / 256.0, depths[i] as f64]);
         let [a, b, c] = three(shades, |shade| shade as f32 / 256.0);
         Self { weights, values, steps: [dn, dd], range: [a.min(b).min(c), a.max(b).max(c)] }
     }

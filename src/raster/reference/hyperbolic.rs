@@ -16,7 +16,7 @@
 
 use super::cover::SortedTriangle;
 use super::shade::RESEED;
-use super::weights::{Weights, in_f64};
+use super::weights::{Weights, exact, in_f64};
 use crate::fixed::HAS_F64;
 use crate::lanes::three;
 use crate::simd::BASELINE;
@@ -43,11 +43,8 @@ impl HyperbolicPlane {
     /// The sums, over the corners, of weight times depth times shade (with `more` added to each shade) and of weight
     /// times depth. Depth times shade is below 2⁴⁹.
     fn sums(&self, weights: [i64; 3], more: i64) -> (i128, i128) {
-        let sum = |value: [i64; 3]| {
-            let [a, b, c] = three([0, 1, 2], |i| i128::from(weights[i]) * i128::from(value[i]));
-            a + b + c
-        };
-        (sum(three([0, 1, 2], |i| self.depths[i] * (self.shades[i] + more))), sum(self.depths))
+        let products = three([0, 1, 2], |i| self.depths[i] * (self.shades[i] + more));
+        (exact(weights, products), exact(weights, self.depths))
     }
 
     /// Numerator and denominator of the exact shade at pixel (`x`, `y`), in 1/256.

@@ -2,7 +2,7 @@
 
 use super::cover::SortedTriangle;
 use super::quotient::Divisor;
-use super::weights::{Weights, in_f64};
+use super::weights::{Weights, exact, in_f64};
 use crate::fixed::{HAS_F64, floor_of_wide, nearest_whole};
 
 /// The depth of a corner, at least 1.
@@ -59,15 +59,9 @@ impl AffinePlane {
         } else {
             0
         };
-        Self {
-            area,
-            coordinate: a.into(),
-            corner: [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128],
-            gradient: [gx, gy],
-            fits,
-            bias: if gx < 0 { area.get() - 1 } else { 0 },
-            step,
-        }
+        let corner = [i64::from(first.x().to_bits()) - 128, i64::from(first.y().to_bits()) - 128];
+        let bias = if gx < 0 { area.get() - 1 } else { 0 };
+        Self { area, coordinate: a.into(), corner, gradient: [gx, gy], fits, bias, step }
     }
 
     /// The coordinate at a pixel, and its change per column and per row: each a floor, modulo 2³², and a remainder.
@@ -134,14 +128,6 @@ pub(in crate::raster) struct PerspectiveTexture {
     estimated: [[f64; 3]; 3],
     /// Change of the [sums](Self::sums) from one pixel to the next, and from one row to the next.
     pub(in crate::raster) steps: [[f64; 3]; 2],
-}
-
-/// The sum over the corners of weights times values, exact.
-#[cfg_attr(mode13h_small, inline(never))]
-#[cfg_attr(not(mode13h_small), inline)]
-pub(in crate::raster) fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
-    let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
-    product(wa, a) + product(wb, b) + product(wc, c)
 }
 
 /// The sum in f64.

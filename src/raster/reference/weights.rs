@@ -44,6 +44,14 @@ impl Weights {
     }
 }
 
+/// The sum over the corners of weights times values, exact.
+#[cfg_attr(mode13h_small, inline(never))]
+#[cfg_attr(not(mode13h_small), inline)]
+pub(in crate::raster) fn exact([wa, wb, wc]: [i64; 3], [a, b, c]: [i64; 3]) -> i128 {
+    let product = |weight: i64, value: i64| i128::from(weight) * i128::from(value);
+    product(wa, a) + product(wb, b) + product(wc, c)
+}
+
 /// Weights in f64, exactly: they are at most 2⁴⁴.
 #[inline]
 pub(in crate::raster) fn in_f64([a, b, c]: [i64; 3]) -> [f64; 3] {

@@ -146,17 +146,17 @@ impl<D: Cell> Raster<'_, D> {
         }
         let coming = &mut coming[..begun];
         coming.sort_unstable();
-        let mut sweep = Sweep { drawn: DrawStats::default(), run: None };
+        let mut drawn = DrawStats::default();
         let mut list = active::List::new(active, pairs, self.clip, self.frame.width());
         let mut next = 0;
         while let Some(y) = list.row().or_else(|| coming.get(next).map(|key| Key(*key).position())) {
             let enter = coming[next..].iter().take_while(|key| Key(**key).position() == y).count();
             list.enter(y, &mut coming[next..next + enter], faces);
             next += enter;
-            sweep.row(self, &mut list, open, y, &mut paint);
+            self.sweep(&mut list, open, y, &mut paint, &mut drawn);
             list.down();
         }
-        sweep.drawn
+        drawn
     }
 }
 
@@ -173,23 +173,19 @@ struct Run {
     x1: i32,
 }
 
-/// A sweep along a row, from left to right.
-struct Sweep {
-    drawn: DrawStats,
-    /// The run not yet painted, because the next segment may belong to the same face.
-    run: Option<Run>,
-}
-
-impl Sweep {
-    fn row<D: Cell>(
+impl<D: Cell> Raster<'_, D> {
+    /// Sweeps along a row, from left to right.
+    fn sweep(
         &mut self,
-        raster: &mut Raster<'_, D>,
         list: &mut active::List<'_>,
         open: &mut [u64],
         y: i32,
         paint: &mut impl Painter,
+        drawn: &mut DrawStats,
     ) {
         let (mut next, mut opened, mut x) = (0, 0, 0);
+        // The run not yet painted, because the next segment may belong to the same face.
+        let mut run: Option<Run> = None;
         loop {
             if opened == 0 {
                 // Skip to where a face begins.
@@ -199,21 +195,24 @@ impl Sweep {
             while let Some(key) = list.key(next).filter(|key| key.position() <= x) {
                 let pair = &list.pairs[key.number()];
                 if pair.row.x0 < pair.row.x1 {
-                    self.drawn.covered += (pair.row.x1 - pair.row.x0) as u32;
+                    drawn.covered += (pair.row.x1 - pair.row.x0) as u32;
                     open[opened] = key.number() as u64;
                     opened += 1;
                 }
                 next += 1;
             }
-            let mut end = list.key(next).map_or(i32::MAX, Key::position);
-            for slot in &open[..opened] {
-                end = end.min(list.pairs[*slot as usize].row.x1);
-            }
-            let faces = &open[..opened];
+            let (begin, faces) = (list.key(next).map_or(i32::MAX, Key::position), &open[..opened]);
+            let end = faces.iter().fold(begin, |end, slot| end.min(list.pairs[*slot as usize].row.x1));
             while !faces.is_empty() && x < end {
                 let (slot, until) = nearest::lead(faces, list, x, end, y);
-                if let Some(slot) = slot {
-                    self.extend(Run { slot, x0: x, x1: until }, raster, list, y, paint);
+                match (slot, &mut run) {
+                    (Some(slot), Some(last)) if last.slot == slot && last.x1 == x => last.x1 = until,
+                    (Some(slot), last) => {
+                        if let Some(last) = last.replace(Run { slot, x0: x, x1: until }) {
+                            self.paint_run(last, list, y, paint, drawn);
+                        }
+                    }
+                    (None, _) => {}
                 }
                 x = until;
             }
@@ -226,44 +225,24 @@ impl Sweep {
             }
             opened = kept;
         }
-        if let Some(run) = self.run.take() {
-            self.paint(run, raster, list, y, paint);
+        if let Some(run) = run {
+            self.paint_run(run, list, y, paint, drawn);
         }
     }
 
-    #[inline]
-    fn extend<D: Cell>(
+    fn paint_run(
         &mut self,
-        run: Run,
-        raster: &mut Raster<'_, D>,
+        Run { slot, x0, x1 }: Run,
         list: &mut active::List<'_>,
         y: i32,
         paint: &mut impl Painter,
+        drawn: &mut DrawStats,
     ) {
-        match &mut self.run {
-            Some(last) if last.slot == run.slot && last.x1 == run.x0 => last.x1 = run.x1,
-            last => {
-                if let Some(last) = last.replace(run) {
-                    self.paint(last, raster, list, y, paint);
-                }
-            }
-        }
-    }
-
-    fn paint<D: Cell>(
-        &mut self,
-        run: Run,
-        raster: &mut Raster<'_, D>,
-        list: &mut active::List<'_>,
-        y: i32,
-        paint: &mut impl Painter,
-    ) {
-        let Some(pixels) = raster.frame.row_mut(y as u32) else { return };
-        let Run { slot, x0, x1 } = run;
+        let Some(pixels) = self.frame.row_mut(y as u32) else { return };
         let pair = &mut list.pairs[slot];
         let row = Row { y, x0, x1, ..pair.row };
-        if !paint(pair.order, &row, pixels, raster.kernel, &mut self.drawn) {
-            pair.paint().row(&row, &mut InRow { pixels, kernel: raster.kernel, drawn: &mut self.drawn });
+        if !paint(pair.order, &row, pixels, self.kernel, drawn) {
+            pair.paint().row(&row, &mut InRow { pixels, kernel: self.kernel, drawn });
         }
     }
 }

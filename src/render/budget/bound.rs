@@ -87,15 +87,10 @@ impl Lobe {
         let (slow, fast) = (1.0 - 1.0 / s, 1.0 - 2.0 / s);
         let (peak_at, peak) =
             if fast > 0.01 { (1.0 / fast + 0.5, 2.0 / fast * libm::expf(-1.0 - fast / 2.0)) } else { (HUGE, HUGE) };
-        Self {
-            shininess: s,
-            slow,
-            fast,
-            peak_at,
-            peak: peak.min((s - 1.0).max(0.0)),
-            steepest_at: if slow > 0.0 { 0.5 / slow } else { HUGE },
-            steepest: if s > 1.0 { (0.606_54 / libm::sqrtf(s - 1.0)).min(1.0) } else { 1.0 },
-        }
+        let peak = peak.min((s - 1.0).max(0.0));
+        let steepest_at = if slow > 0.0 { 0.5 / slow } else { HUGE };
+        let steepest = if s > 1.0 { (0.606_54 / libm::sqrtf(s - 1.0)).min(1.0) } else { 1.0 };
+        Self { shininess: s, slow, fast, peak_at, peak, steepest_at, steepest }
     }
 }
 
@@ -153,13 +148,8 @@ impl FallOff {
         // At the cone's edge, the cosine is no less than the outer one.
         let cosine = greater(greater(least, inner - 1.0 / inverse_width), 0.0);
         let sine = square_root(greater(1.0 - cosine * cosine, 0.0) + ROUNDING);
-        Self {
-            most: share(high),
-            least: share(low),
-            first: lesser(slope * sine * turn, HUGE),
-            second: lesser((bend * sine * sine + slope * BEND) * turn * turn, HUGE),
-            turn,
-        }
+        let second = lesser((bend * sine * sine + slope * BEND) * turn * turn, HUGE);
+        Self { most: share(high), least: share(low), first: lesser(slope * sine * turn, HUGE), second, turn }
     }
 
     /// The fall-off times a spot light's share.

@@ -297,11 +297,7 @@ impl Faces<'_> {
     ) -> Option<Nodes> {
         let channels = if self.stages.has_channels() { 3 } else { 1 };
         let mut known = None;
-        for (grid, (n, points)) in grids.iter().enumerate() {
-            let is_worth = left[grid] > (1.0 - MODEL) * spare;
-            if !is_worth {
-                continue;
-            }
+        for (grid, (n, points)) in grids.iter().enumerate().filter(|(grid, _)| left[*grid] > (1.0 - MODEL) * spare) {
             let nodes: &Nodes = known.get_or_insert_with(|| self.light_at(face, &NODES));
             let curves = three(nodes.each_ref(), Quadratic::new);
             let between = greatest(three(curves, |curve| curve.between(*n)));

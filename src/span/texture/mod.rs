@@ -208,9 +208,7 @@ impl fmt::Display for TexelsError {
     }
 }
 
-crate::errors::debug_as_display!(TexelsError);
-
-impl core::error::Error for TexelsError {}
+crate::errors::error_type!(TexelsError);
 
 /// Fills `row` with the texels along a straight line through the texture.
 ///
