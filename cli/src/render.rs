@@ -302,6 +302,9 @@ impl Out {
             return Err(wrong(&"--to shows the picture in the terminal, so -o can only be -"));
         }
         if is_stream && (to.is_some() || io::stdout().is_terminal()) {
+            if *rgb {
+                return Err(wrong(&"--rgb is for .png"));
+            }
             if frames.is_some_and(|frames| frames > 1) {
                 return Err(Failure::words("a terminal shows one picture; `mode13h demo --terminal` shows motion"));
             }

@@ -94,6 +94,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
         was_transparent: false,
     };
     let mut layers: Vec<Layer> = Vec::new();
+    // Each with its place from the lowest to the top one.
+    let mut cels: Vec<(i32, i32, Bytes<'_>)> = Vec::new();
     let mut has_palette = false;
     for _ in 0..chunks {
         let size = file.double()?;
@@ -103,9 +105,21 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
             LAYER => {
                 let flags = chunk.word()?;
                 chunk.word()?;
-                layers.push(Layer { is_visible: flags & 1 != 0, is_background: flags & 8 != 0, level: chunk.word()? });
+                // A reference layer, 64, is shown by the editor alone.
+                layers.push(Layer {
+                    is_visible: flags & (1 | 64) == 1,
+                    is_background: flags & 8 != 0,
+                    level: chunk.word()?,
+                });
             }
-            CEL => cel(chunk, &layers, transparent, &mut picture)?,
+            CEL => {
+                let mut head = chunk;
+                let layer = i32::from(head.word()?);
+                // Position, opacity and type.
+                head.take(7)?;
+                let z = i32::from(head.word()? as i16);
+                cels.push((layer + z, z, chunk));
+            }
             PALETTE => {
                 has_palette = true;
                 palette(chunk, &mut picture.colors)?;
@@ -116,6 +130,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Indexed, LoadErrorKind> {
             }
             _ => {}
         }
+    }
+    cels.sort_by_key(|&(place, z, _)| (place, z));
+    for (.., chunk) in cels {
+        cel(chunk, &layers, transparent, &mut picture)?;
     }
     let has_background = layers.iter().any(|layer| layer.is_background && layer.is_visible);
     picture.was_transparent = !has_background && picture.indices.contains(&transparent);

@@ -174,6 +174,21 @@ fn a_sprite_keeps_its_indices() {
     );
 }
 
+/// A cel's z-index moves it among the layers, and a reference layer is not part of the picture.
+#[test]
+fn cels_of_a_sprite_are_drawn_in_their_order() {
+    let full = |of_layer, index, z: i16| {
+        let mut cel = cel(of_layer, [0, 0], [8, 4], &[index; 32], false);
+        // After the chunk's size and type, layer, position, opacity and type.
+        cel[15..17].copy_from_slice(&z.to_le_bytes());
+        cel
+    };
+    for (z, top, shown) in [(0, 1, 6), (1, 1, 5), (2, 1, 5), (-1, 1, 6), (0, 1 | 64, 5)] {
+        let chunks = [new_palette(), layer(1, 0, 0), layer(top, 0, 0), full(0, 5, z), full(1, 6, 0)];
+        assert_eq!(decoded(&sprite(8, 4, &chunks)).texture.texels(), [shown; 32], "{z}, {top}");
+    }
+}
+
 /// Visible layers cover one another; the transparent index shows what is below; cels may reach beyond the sprite.
 #[test]
 fn layers_of_a_sprite() {

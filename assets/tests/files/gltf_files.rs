@@ -584,6 +584,41 @@ fn errors_say_part_or_place() {
     assert_eq!(refused(missing.as_bytes()), "a.glb: buffers[0]: no.bin: entity not found");
 }
 
+/// Programs and extensions may add to a file.
+#[test]
+fn additions_are_read_over() {
+    let mut file = Gltf::default();
+    let positions = file.floats(&TRIANGLE);
+    file.shown(&format!("\"POSITION\":{positions},\"_FEATURE_ID_0\":{positions}"), ",\"extras\":\"text\"");
+    file.shown(&format!("\"NORMAL\":{positions}"), "");
+    let key = file.floats(&[[0.0]; 1]);
+    file.replace("accessors", "VEC1", "SCALAR");
+    file.add(
+        "animations",
+        format!(
+            "{{\"samplers\":[{{\"input\":{key},\"output\":{positions}}}],\"channels\":[{{\"sampler\":0,\"target\":\
+             {{\"path\":\"pointer\"}}}},{{\"sampler\":0,\"target\":{{\"node\":0,\"path\":\"translation\"}}}}]}}"
+        ),
+    );
+    file.more = ",\"extras\":[1]".into();
+    let loaded = loaded(file.glb(), "a.glb");
+    assert_eq!(loaded.mesh.triangles().len(), 1);
+    assert_eq!(loaded.warnings, ["a.glb: left out: meshes without positions"]);
+}
+
+/// Samplers that share accessors cannot ask for more memory than the file has reason to.
+#[test]
+fn keys_of_animations_have_a_limit() {
+    let mut file = with_triangle("");
+    let zeros = |kind: &str| format!("{{\"componentType\":5126,\"count\":1048576,\"type\":\"{kind}\"}}");
+    let (times, values) = (file.add("accessors", zeros("SCALAR")), file.add("accessors", zeros("VEC3")));
+    let list = |entry: &dyn Fn(usize) -> String| (0..9).map(entry).collect::<Vec<_>>().join(",");
+    let samplers = list(&|_| format!("{{\"input\":{times},\"output\":{values}}}"));
+    let channels = list(&|i| format!("{{\"sampler\":{i},\"target\":{{\"node\":0,\"path\":\"translation\"}}}}"));
+    file.add("animations", format!("{{\"samplers\":[{samplers}],\"channels\":[{channels}]}}"));
+    assert_eq!(refused(file.glb(), "a.glb"), "a.glb: animations[0].samplers[8]: more than 16777216 keys");
+}
+
 #[test]
 fn what_is_left_out_is_one_warning() {
     let mut file = Gltf::default();

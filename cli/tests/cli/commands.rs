@@ -896,7 +896,7 @@ fn a_film_has_its_figures() {
 /// A pipe that nobody reads can be waited for without end, but not after an interruption.
 #[cfg(unix)]
 #[test]
-fn f4_writing_to_a_pipe_that_nobody_reads_is_interrupted() {
+fn writing_to_a_pipe_that_nobody_reads_is_interrupted() {
     for (words, pipe) in [
         ("render torus -o x.png", "x.png"),
         ("render torus --frames 9 -o x.gif", "x.gif"),

@@ -24,7 +24,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
         true => chunks(bytes, path)?,
         false => (without_mark(bytes), None, None),
     };
-    let mut root = json::Root::from_slice(text).map_err(|error| {
+    let mut root = parsed(text).map_err(|error| {
         let kind = ModelFileErrorKind::Fault(format!("not glTF: {}", without_place(&error.to_string())));
         let place = match start {
             // A truncated file ends on its last line, not on one that a final line break would begin.
@@ -76,16 +76,36 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     Ok((Document::from_json_without_validation(root), binary))
 }
 
+/// Parses JSON. `gltf` wants every channel of an animation to name a node; the specification does not, and one without,
+/// which moves what an extension says, is left out.
+fn parsed(text: &[u8]) -> Result<json::Root, json::Error> {
+    let error = match json::Root::from_slice(text) {
+        Err(error) if error.to_string().starts_with("missing field `node`") => error,
+        result => return result,
+    };
+    let again = || {
+        let mut all: json::Value = json::deserialize::from_slice(text).ok()?;
+        for animation in all.get_mut("animations")?.as_array_mut()? {
+            let channels = animation.get_mut("channels").and_then(json::Value::as_array_mut);
+            let has_node = |channel: &json::Value| channel.pointer("/target/node").is_some();
+            channels.into_iter().for_each(|channels| channels.retain(has_node));
+        }
+        json::deserialize::from_value(all).ok()
+    };
+    again().ok_or(error)
+}
+
 /// The first part of a file that `gltf` finds faulty, and its fault.
 ///
 /// `gltf` wants every accessor to have a buffer view or sparse values; by the specification an accessor without them is
-/// all zeros.
+/// all zeros. A primitive without positions is left out.
 fn first_fault(root: &json::Root) -> Option<(String, validation::Error)> {
     let mut first = None;
     root.validate(root, json::Path::new, &mut |path, error| {
         let part = path().to_string();
         let is_zeros = part.starts_with("accessors[") && part.ends_with("].bufferView");
-        if !(is_zeros && error == validation::Error::Missing) {
+        let is_unplaced = part.ends_with(".attributes[\"POSITION\"]");
+        if !((is_zeros || is_unplaced) && error == validation::Error::Missing) {
             first.get_or_insert((part, error));
         }
     });

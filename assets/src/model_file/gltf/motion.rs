@@ -16,19 +16,23 @@ pub(super) fn read(
 ) -> Result<Vec<Clip>, String> {
     let mut stands = vec![false; skeleton.nodes.len()];
     skeleton.order.iter().for_each(|&node| stands[node] = true);
-    let mut clips = Vec::new();
+    let (mut clips, mut room) = (Vec::new(), MOST_KEYS);
     for animation in document.animations() {
-        clips.extend(clip(&animation, buffers, &stands, left_out)?);
+        clips.extend(clip(&animation, buffers, &stands, (left_out, &mut room))?);
     }
     Ok(clips)
 }
 
-/// One animation; `None` if it moves no node.
+/// The most times and values of all animations together: samplers may share accessors, so a small file could ask for
+/// any amount of memory.
+const MOST_KEYS: usize = 1 << 24;
+
+/// One animation; `None` if it moves no node. There is room for this many more keys.
 fn clip(
     animation: &Animation<'_>,
     buffers: &Buffers,
     stands: &[bool],
-    left_out: &mut LeftOut,
+    (left_out, room): (&mut LeftOut, &mut usize),
 ) -> Result<Option<Clip>, String> {
     let (mut samplers, mut channels) = (Vec::new(), Vec::new());
     // The index in `samplers` of each of the file's, for vectors and for rotations: two channels may share one.
@@ -53,6 +57,8 @@ fn clip(
             Some(place) => place,
             None => {
                 let part = || format!("animations[{}].samplers[{}]", animation.index(), sampler.index());
+                let count = sampler.input().count().saturating_add(sampler.output().count());
+                *room = room.checked_sub(count).ok_or_else(|| format!("{}: more than {MOST_KEYS} keys", part()))?;
                 samplers.push(keys(&sampler, is_rotation, buffers).map_err(|what| format!("{}: {what}", part()))?);
                 *place.insert(samplers.len() - 1)
             }
