@@ -190,7 +190,8 @@ impl<'a> Frame<'a> {
         let (width, height, pitch, rows) = (self.width, self.height, self.pitch, self.rows.clone());
         let rows_each = rows_each.clamp(1, Self::MAX_SIDE);
         // The last chunk may lack the bytes after the last pixel; it still holds `width` bytes.
-        self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
+        let chunks = self.pixels.chunks_mut(pitch.saturating_mul(rows_each as usize));
+        chunks.take(rows.len().div_ceil(rows_each as usize)).zip(0..).filter_map(move |(pixels, band)| {
             let first = rows.start + band * rows_each;
             Frame::band(pixels, width, height, pitch, first..(first + rows_each).min(rows.end)).ok()
         })

@@ -93,7 +93,9 @@ impl<'a, D: Cell> Raster<'a, D> {
     /// Draws only inside `clip`, as far as the frame holds it. The bytes inside are the same as without clipping.
     #[must_use]
     pub fn with_clip(mut self, clip: Rect) -> Self {
-        self.clip = clip.intersection(self.frame.bounds());
+        // The start of an empty rectangle may be any number.
+        let clip = clip.intersection(self.frame.bounds());
+        self.clip = if clip.x0 < clip.x1 && clip.y0 < clip.y1 { clip } else { Rect::default() };
         self
     }
 

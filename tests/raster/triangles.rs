@@ -228,6 +228,27 @@ fn draw_with_depth(vertices: &[Vertex; 3], interpolation: Interpolation) -> (Vec
     (bytes, wide, narrow)
 }
 
+/// Whatever numbers an empty rectangle has.
+#[test]
+fn an_empty_clip_rectangle_shows_nothing() {
+    let at = |x, y| Vertex::new(I24F8::from(x), I24F8::from(y), U8F8::MAX_VERTEX, 9).expect("in range");
+    let vertices = [at(-50, -50), at(300, 0), at(0, 200)];
+    let rect = |x0, y0, x1, y1| Rect { x0, y0, x1, y1 };
+    for clip in [
+        rect(u32::MAX, 0, u32::MAX, 200),
+        rect(u32::MAX - 4, 0, 40, 200),
+        rect(0, u32::MAX, 320, u32::MAX),
+        rect(0, 1 << 31, 320, 20),
+        rect(7, 7, 7, 9),
+    ] {
+        let mut bytes = [3; 100 * 60];
+        let mut raster = Raster::new(Frame::new(&mut bytes, 100, 60, 100).expect("legal")).with_clip(clip);
+        let mut drawn = raster.triangle(&vertices, Interpolation::Gouraud88);
+        drawn += raster.triangles([(&vertices, Interpolation::Gouraud88Reseeded); 9]);
+        assert!((drawn.covered, drawn.pixels) == (0, 0) && bytes == [3; 100 * 60], "{clip:?}: {drawn:?}");
+    }
+}
+
 #[test]
 fn r8_a_clip_rectangle_changes_no_byte_inside_it() {
     let mut tried = Tried::new("r8_a_clip_rectangle_changes_no_byte_inside_it", 1500);

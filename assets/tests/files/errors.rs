@@ -35,16 +35,20 @@ fn errors_print_what_they_display() {
     assert!(error.to_string().starts_with("none.obj: "), "{error}");
 }
 
-/// Every error of the library prints this way, through one macro.
+/// Every error of the library prints this way, through one macro or through the other, which uses it.
 #[test]
 fn every_error_prints_what_it_displays() {
     let mut errors = 0;
     for (path, text) in ["src", "assets/src"].into_iter().flat_map(workspace::sources) {
         for (_, rest) in text.match_indices("Error for ").map(|(at, start)| text.split_at(at + start.len())) {
             let name = rest.split(|c: char| !c.is_alphanumeric()).next().expect("a name");
-            assert!(text.contains(&format!("debug_as_display!({name});")), "{path}: {name}");
-            errors += 1;
+            // The other macro's has none.
+            if !name.is_empty() {
+                assert!(text.contains(&format!("debug_as_display!({name});")), "{path}: {name}");
+                errors += 1;
+            }
         }
+        errors += text.matches("::error_type!(").count();
     }
     assert!(errors >= 18, "{errors}");
 }
