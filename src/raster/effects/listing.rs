@@ -241,11 +241,18 @@ pub(super) struct ListedFaces<'a> {
     pub(super) direct: Option<Direct<'a>>,
 }
 
+/// Never called, since there are as many planes. Inlined, it would put them on its caller's stack.
+#[cold]
+#[inline(never)]
+fn unplaced<T: Default>() -> T {
+    T::default()
+}
+
 impl SpanData {
     pub(super) fn new() -> Self {
         let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
         let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
-        let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_default();
+        let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_else(|_| unplaced());
         Self { numbers, coordinates, sums, single_sums, planes }
     }
 
