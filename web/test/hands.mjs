@@ -229,7 +229,7 @@ async function names(tab) {
   await tab.evaluate("page.scenes.take([new File(['v 0 0 0\\nv 1 0 0\\nv 0 1 0\\nf 1 2 3\\n'], 'mine.obj'), new File(['?'], 'mine.jpg')])");
   suite.check("a file that cannot be read is named", (await tab.evaluate("element('trouble').textContent")).includes("mine.jpg: not read"));
   await click(tab, "#copy-link");
-  await until(tab, "element('saved').textContent.includes('cannot carry mine.obj')");
+  await until(tab, "element('saved').textContent.includes('does not include mine.obj')");
   suite.check("a link says what it cannot carry", true);
 }
 
