@@ -657,7 +657,7 @@ fn f4_what_was_read_is_never_overwritten() {
     folder.succeed("render cube -o box.png");
 }
 
-/// What the 16.16 path lacks is named, not ignored without a word.
+/// Options that the 16.16 path ignores are named.
 #[test]
 fn options_that_16_16_ignores_are_named() {
     let folder = Folder::new();
