@@ -101,8 +101,8 @@ pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// program ends as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
-    let waits = !path.is_some_and(is_stream);
-    let writing = waits.then(|| WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner));
+    let is_kept = path.is_some_and(|path| !is_stream(path));
+    let writing = is_kept.then(|| WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner));
     let result = write();
     drop(writing);
     while is_interrupted() {

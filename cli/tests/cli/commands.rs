@@ -913,6 +913,18 @@ fn writing_to_a_pipe_that_nobody_reads_is_interrupted() {
         assert!(said.ends_with("mode13h: interrupted\n"), "{said}");
         assert_eq!(folder.names(), [pipe]);
     }
+    // Nor does standard output keep it, if its reader stops reading.
+    let folder = Folder::new();
+    let mut child = folder.program("render torus -o - --frames 400");
+    let mut child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-TERM", &id]).status().expect("started").success());
+    // Before anything is read.
+    std::thread::sleep(std::time::Duration::from_secs(1));
+    let status = child.try_wait().expect("waited");
+    let _ = child.kill();
+    assert_eq!(status.and_then(|status| status.code()), Some(130), "{status:?}");
 }
 
 #[cfg(unix)]
