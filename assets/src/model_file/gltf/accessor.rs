@@ -87,6 +87,20 @@ impl Buffers {
 
     /// The rows of an accessor, the first `N` numbers of each.
     pub(super) fn rows<const N: usize>(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; N]>, String> {
+        self.picked(accessor, None)
+    }
+
+    /// The rows of an accessor at these indices, which must be below its count.
+    pub(super) fn rows_at<const N: usize>(&self, accessor: &Accessor<'_>, at: &[u32]) -> Result<Vec<[f64; N]>, String> {
+        if accessor.sparse().is_none() {
+            return self.picked(accessor, Some(at));
+        }
+        let rows = self.rows::<N>(accessor)?;
+        Ok(at.iter().map(|&index| rows[index as usize]).collect())
+    }
+
+    /// The rows of an accessor: all of them, or those at some indices if it is not sparse.
+    fn picked<const N: usize>(&self, accessor: &Accessor<'_>, at: Option<&[u32]>) -> Result<Vec<[f64; N]>, String> {
         let part = format!("accessors[{}]", accessor.index());
         if accessor.dimensions().multiplicity() < N {
             return Err(format!("{part} has fewer than {N} components"));
@@ -96,14 +110,18 @@ impl Buffers {
         let mut rows: Vec<[f64; N]> = match accessor.view() {
             Some(view) => {
                 let bytes = self.view(&view)?;
-                let rows = slices(bytes, accessor.offset(), view.stride(), size, accessor.count());
-                rows.ok_or_else(|| format!("{part} ends beyond bufferViews[{}]", view.index()))?.map(row).collect()
+                let slice = slices(bytes, accessor.offset(), view.stride(), size, accessor.count());
+                let slice = slice.ok_or_else(|| format!("{part} ends beyond bufferViews[{}]", view.index()))?;
+                match at {
+                    Some(at) => at.iter().map(|&index| row(slice(index as usize))).collect(),
+                    None => (0..accessor.count()).map(|index| row(slice(index))).collect(),
+                }
             }
             None if accessor.count() > MAX_ZEROS => {
                 return Err(format!("{part}: more than 1,048,576 elements without a bufferView"));
             }
             // The allocator gives zeros that take no memory until they are used.
-            None => vec![[0.0; N]; accessor.count()],
+            None => vec![[0.0; N]; at.map_or(accessor.count(), <[u32]>::len)],
         };
         if let Some(sparse) = accessor.sparse() {
             let beyond = || format!("{part}.sparse ends beyond its bufferView");
@@ -115,23 +133,17 @@ impl Buffers {
             };
             let view = indices.view();
             let bytes = self.view(&view)?;
-            let at = slices(bytes, indices.offset(), view.stride(), width, sparse.count()).ok_or_else(beyond)?;
+            let index = slices(bytes, indices.offset(), view.stride(), width, sparse.count()).ok_or_else(beyond)?;
             let view = values.view();
             let bytes = self.view(&view)?;
-            let new = slices(bytes, values.offset(), view.stride(), size, sparse.count()).ok_or_else(beyond)?;
-            for (at, new) in at.zip(new) {
-                let [at] = self::row::<1>(at, kind, false);
-                *rows.get_mut(at as usize).ok_or_else(|| format!("{part}.sparse: there is no element {at}"))? =
-                    row(new);
+            let value = slices(bytes, values.offset(), view.stride(), size, sparse.count()).ok_or_else(beyond)?;
+            for i in 0..sparse.count() {
+                let [index] = self::row::<1>(index(i), kind, false);
+                *rows.get_mut(index as usize).ok_or_else(|| format!("{part}.sparse: there is no element {index}"))? =
+                    row(value(i));
             }
         }
         Ok(rows)
-    }
-
-    /// The rows of an accessor at these indices, which must be below its count.
-    pub(super) fn rows_at<const N: usize>(&self, accessor: &Accessor<'_>, at: &[u32]) -> Result<Vec<[f64; N]>, String> {
-        let rows = self.rows::<N>(accessor)?;
-        Ok(at.iter().map(|&index| rows[index as usize]).collect())
     }
 
     /// The integers of an accessor.
@@ -143,19 +155,20 @@ impl Buffers {
     }
 }
 
-/// `count` slices of `size` bytes, `stride` apart, or one after another; `None` if they end beyond `bytes`.
-fn slices(
-    bytes: &[u8],
+/// Gives each of `count` slices of `size` bytes, `stride` apart, or one after another; `None` if they end beyond
+/// `bytes`.
+fn slices<'a>(
+    bytes: &'a [u8],
     offset: usize,
     stride: Option<usize>,
     size: usize,
     count: usize,
-) -> Option<impl Iterator<Item = &[u8]>> {
+) -> Option<impl Fn(usize) -> &'a [u8]> {
     let stride = stride.filter(|stride| *stride > 0).unwrap_or(size);
     let last = count.checked_sub(1).map_or(Some(0), |last| last.checked_mul(stride)?.checked_add(size));
     let end = last?.checked_add(offset)?;
     let bytes = bytes.get(offset.min(bytes.len())..).filter(|_| end <= bytes.len())?;
-    Some((0..count).map(move |i| &bytes[i * stride..][..size]))
+    Some(move |i| &bytes[i * stride..][..size])
 }
 
 /// The first `N` numbers of a row, which must have at least that many.

@@ -39,9 +39,10 @@ pub(super) fn triangles(
 
 /// Renumbers the vertices of triangles in the order of their first use, and returns the old number of each.
 ///
-/// Many primitives and nodes may share a list of vertices of which each uses few.
-pub(super) fn used(triangles: &mut [[u32; 3]], count: usize) -> Vec<u32> {
-    let mut numbers = vec![u32::MAX; count];
+/// Many primitives and nodes may share a list of vertices of which each uses few. So `numbers` serves them all, and is
+/// cleared only where it was used.
+pub(super) fn used(triangles: &mut [[u32; 3]], numbers: &mut Vec<u32>, count: usize) -> Vec<u32> {
+    numbers.resize(numbers.len().max(count), u32::MAX);
     let mut used = Vec::new();
     for corner in triangles.as_flattened_mut() {
         let number = &mut numbers[*corner as usize];
@@ -52,5 +53,6 @@ pub(super) fn used(triangles: &mut [[u32; 3]], count: usize) -> Vec<u32> {
         }
         *corner = *number;
     }
+    used.iter().for_each(|&corner| numbers[corner as usize] = u32::MAX);
     used
 }

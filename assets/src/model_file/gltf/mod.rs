@@ -89,6 +89,7 @@ pub(crate) fn draft(
         materials: Materials::new(path, &buffers, &mut file),
         buffers: &buffers,
         left_out,
+        numbers: Vec::new(),
         colors: Vec::new(),
         transforms: skeleton.transforms(&skeleton.places(|_| None)),
         moving: (!clips.is_empty()).then(Vertices::default),
@@ -144,6 +145,8 @@ struct Reading<'a> {
     buffers: &'a Buffers,
     materials: Materials<'a>,
     left_out: LeftOut,
+    /// For [`corners::used`].
+    numbers: Vec<u32>,
     /// Faces with a colour of their own.
     colors: Vec<(usize, Rgb)>,
     /// The transforms that vertices are bound to, at rest.
@@ -170,13 +173,14 @@ impl Reading<'_> {
             return Ok(());
         };
         let (surface, mapping, shade) = self.materials.surface(&primitive.material());
-        let positions = self.buffers.rows::<3>(&positions).map_err(fault)?;
-        let count = positions.len();
+        // An error if there are fewer than the file says.
+        self.buffers.rows_at::<3>(&positions, &[]).map_err(fault)?;
+        let count = positions.count();
         let indices = primitive.indices().map(|a| self.buffers.read_indices(&a)).transpose().map_err(fault)?;
         let room = MAX_TRIANGLES.saturating_sub(draft.lists.sizes.len());
         let mut triangles = corners::triangles(primitive.mode(), indices.as_deref(), count, room)?;
-        let used = corners::used(&mut triangles, count);
-        let positions: Vec<[f64; 3]> = used.iter().map(|vertex| positions[*vertex as usize]).collect();
+        let used = corners::used(&mut triangles, &mut self.numbers, count);
+        let positions = self.buffers.rows_at::<3>(&positions, &used).map_err(fault)?;
         let attribute = |semantic: &Semantic| {
             // An attribute with too few entries for the vertices is ignored.
             primitive.get(semantic).filter(|accessor| accessor.count() >= count)
@@ -186,8 +190,11 @@ impl Reading<'_> {
         let pairs = attribute(&Semantic::TexCoords(mapping.set)).map(|a| self.buffers.rows_at::<2>(&a, &used));
         let pairs = pairs.transpose().map_err(fault)?;
         let is_textured = self.materials.surfaces[surface].texture.is_some();
-        let colors = attribute(&Semantic::Colors(0)).filter(|_| !is_textured);
-        let colors = colors.map(|a| self.buffers.rows_at::<3>(&a, &used)).transpose().map_err(fault)?;
+        let colors = attribute(&Semantic::Colors(0)).map(|a| self.buffers.rows_at::<3>(&a, &used));
+        let mut colors = colors.transpose().map_err(fault)?;
+        if is_textured && colors.take().is_some_and(|colors| colors.as_flattened().iter().any(|c| *c < 1.0)) {
+            self.left_out.insert("colours of vertices with a texture");
+        }
         // By the specification a skinned mesh is not where its node is, but where its joints are.
         let skinned = match binding.joints {
             Some(joints) => skin::influences(primitive, count, &used, joints, self.buffers).map_err(fault)?,
