@@ -79,7 +79,7 @@ impl Model {
 /// Scene or model that INPUT names.
 pub(crate) enum Input {
     Model(Box<Model>),
-    Scene { name: String, scene: Box<Scene>, look: Option<Look>, playbacks: Vec<Playback> },
+    Scene { name: String, scene: Box<Scene>, look: Option<(Look, Box<Scene>)>, playbacks: Vec<Playback> },
 }
 
 impl Input {
@@ -197,11 +197,12 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         return model_or(words, options, &format!("models are {} files, scenes .toml", Format::extensions()), &known)
             .map(|model| Input::Model(Box::new(model)));
     };
-    let scene_file::Loaded { scene, look, warnings, files, playbacks, .. } = loaded?;
+    let scene_file::Loaded { scene, look, without_look, warnings, files, playbacks, .. } = loaded?;
     files.iter().for_each(|file| read_files::add(file));
     for warning in warnings {
         warn(warning);
     }
+    let look = look.zip(without_look.map(Box::new));
     Ok(Input::Scene { name: name_of(words), scene: Box::new(scene), look, playbacks })
 }
 

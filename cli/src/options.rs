@@ -261,7 +261,7 @@ impl Drawing {
     /// Makes the stage of INPUT, drawn with these options.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
-        let look_of_scene = if let Input::Scene { look, .. } = &input { *look } else { None };
+        let mut look_of_scene = None;
         let (mut stage, usual) = match input {
             Input::Model(model) => {
                 let name = model.name.clone();
@@ -270,7 +270,12 @@ impl Drawing {
                 let colors = if stage.has_colors() { Colors::Auto } else { builtin::GREY.clone().into() };
                 (stage, Some(colors))
             }
-            Input::Scene { scene, playbacks, .. } => {
+            Input::Scene { mut scene, look, playbacks, .. } => {
+                if let Some((look, without)) = look {
+                    look_of_scene = Some(look);
+                    // The option's look replaces it.
+                    scene = if self.look.is_some() { without } else { scene };
+                }
                 let auto = scene.auto_palette.then_some(Colors::Auto);
                 let colors = auto.or(scene.palette.clone().map(Colors::from));
                 (Turntable::of_moving_scene(*scene, playbacks), colors)

@@ -17,7 +17,7 @@ use super::layout::{AnimationLayout, FogLayout, LightLayout, RenderLayout, Scene
 use super::named::{Named, Open};
 use super::object::Objects;
 use super::value::{Background, FileName, List, OffOr, OneOrThree, VertexBits};
-use super::{SceneErrorKind, motion};
+use super::{Loaded, SceneErrorKind, motion};
 use crate::model::Playback;
 
 /// Builds one scene.
@@ -34,8 +34,8 @@ impl<'a> Builder<'a> {
         Self { named: Named::new(path, open), scene: Scene::new(), swept: Vec::new(), playbacks: Vec::new() }
     }
 
-    /// Builds the scene, with warnings, and with the models in it that move by themselves.
-    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<(Scene, Vec<String>, Vec<Playback>), Fault> {
+    /// Builds the scene. The caller knows the files.
+    pub(super) fn scene(mut self, layout: &SceneLayout) -> Result<Loaded, Fault> {
         if layout.objects.is_empty() {
             return Err(Fault { span: None, kind: SceneErrorKind::NoObject });
         }
@@ -49,8 +49,11 @@ impl<'a> Builder<'a> {
         if let Some(name) = &layout.palette {
             self.palette(name)?;
         }
-        if let Some(look) = &layout.look {
-            look.0.lend(&mut self.scene, layout.palette.is_some());
+        let (settings, palette, auto) =
+            (self.scene.settings.clone(), self.scene.palette.clone(), self.scene.auto_palette);
+        let look = layout.look.as_ref().map(|look| look.0);
+        if let Some(look) = look {
+            look.lend(&mut self.scene, layout.palette.is_some());
             // Having none is a choice, too.
             if let Some(RenderLayout { dither: Some(OffOr(None)), .. }) = layout.render {
                 self.scene.settings.dither = None;
@@ -66,7 +69,19 @@ impl<'a> Builder<'a> {
         }
         self.camera(layout)?;
         self.scene.set_time(0.0);
-        Ok((self.scene, self.named.warnings, self.playbacks))
+        let without_look = look.map(|_| {
+            let mut scene = self.scene.clone();
+            (scene.settings, scene.palette, scene.auto_palette) = (settings, palette, auto);
+            scene
+        });
+        Ok(Loaded {
+            scene: self.scene,
+            look,
+            without_look,
+            warnings: self.named.warnings,
+            files: Vec::new(),
+            playbacks: self.playbacks,
+        })
     }
 
     fn palette(&mut self, name: &Spanned<FileName>) -> Result<(), Fault> {

@@ -75,6 +75,8 @@ pub struct Loaded {
     /// The look that the scene asks for, already applied. If that makes the scene prefer an automatic palette, its colours
     /// are still to be [rounded](Look::rounded).
     pub look: Option<Look>,
+    /// The scene before the look was applied, if it has one.
+    pub without_look: Option<Scene>,
     /// The warnings, one line each, with a file and the position in it.
     pub warnings: Vec<String>,
     /// The files that were read or looked for: the scene file itself if it was loaded from one, and the models, MTL
@@ -143,9 +145,10 @@ fn read(text: &str, path: &Path, mut open: impl FnMut(&Path) -> io::Result<Box<d
         files.push(path.to_owned());
         open(path)
     };
-    let (scene, warnings, playbacks) = Builder::new(path, &mut open).scene(&layout)?;
+    let mut loaded = Builder::new(path, &mut open).scene(&layout)?;
     // Includes those that are not looked for because no face has texture coordinates.
-    let surfaces = scene.objects().iter().flat_map(|object| object.mesh().surfaces());
+    let surfaces = loaded.scene.objects().iter().flat_map(|object| object.mesh().surfaces());
     files.extend(surfaces.filter_map(|surface| surface.texture.as_ref().map(PathBuf::from)));
-    Ok(Loaded { scene, look: layout.look.map(|look| look.0), warnings, files, playbacks })
+    loaded.files = files;
+    Ok(loaded)
 }

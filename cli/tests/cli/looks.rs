@@ -88,8 +88,10 @@ fn a_scene_has_a_look_and_its_own_keys_come_before_it() {
     assert!(scene("look = 'ps1'", "dither = false", "") == scene("look = 'ps1'", "", "--no-dither"));
     let exact = scene("look = 'cga'", "vertex-bits = 8\nmapping = 'perspective'", "");
     assert!(exact == scene("look = 'cga'", "", "--vertex-bits 8 --mapping perspective"));
-    // A look on the command line overrides the scene's.
-    assert!(scene("look = 'cga'", "", "--look gameboy") == scene("look = 'gameboy'", "", ""));
+    // A look on the command line replaces the scene's.
+    for look in Look::ALL {
+        assert!(scene("look = 'cga'", "", &format!("--look {look}")) == scene(&format!("look = '{look}'"), "", ""));
+    }
 }
 
 /// An object whose colour comes only from its ramp keeps it in a palette without ramps.
