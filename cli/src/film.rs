@@ -163,9 +163,9 @@ impl Film {
         let (above, below) = self.rate.fraction();
         let (frames, seconds) = (self.frames, f64::from(self.frames) * f64::from(below) / f64::from(above));
         let line = format!(
-            "{}: {width} x {height} pixels, {frames} frame{}, {seconds:.2} s, {}, {bytes} bytes\n",
+            "{}: {width} x {height} pixels, {}, {seconds:.2} s, {}, {bytes} bytes\n",
             on_one_line(&self.out.to_string_lossy()),
-            plural(frames.into()),
+            output::counted(frames.into(), "frame"),
             if fades { "true colour, as the palette changes" } else { "indexed" },
         );
         let json = json!({
@@ -248,23 +248,19 @@ impl Film {
         });
         let in_images = match images == frames {
             true => String::new(),
-            false => format!(" in {images} image{}", plural(*images)),
+            false => format!(" in {}", output::counted(*images, "image")),
         };
         let delays: Vec<String> =
             delays.iter().rev().map(|(delay, images)| format!("{images} x {} ms", 10 * u32::from(*delay))).collect();
         let line = format!(
-            "{}: {width} x {height} pixels, {frames} frame{}{in_images}, {:.2} s, delays {}, {bytes} bytes\n",
+            "{}: {width} x {height} pixels, {}{in_images}, {:.2} s, delays {}, {bytes} bytes\n",
             on_one_line(&self.out.to_string_lossy()),
-            plural(*frames),
+            output::counted(*frames, "frame"),
             film.seconds(),
             delays.join(" + "),
         );
         Figures { line, json }
     }
-}
-
-fn plural(count: u64) -> &'static str {
-    if count == 1 { "" } else { "s" }
 }
 
 /// An error if the program has been told to end. Nobody sees it, because [`output::long_file`] does not return then.

@@ -20,7 +20,8 @@ pub(crate) const SCHEMA: u32 = 1;
 /// Held while a file is written, by any number of threads.
 static WRITING: RwLock<()> = RwLock::new(());
 
-/// Held while a file that may take long is written; it is given up if the program is told to end.
+/// Held while a file that may take long is written, or the terminal shows frames; both are given up if the program is told
+/// to end.
 static WRITING_LONG: Mutex<()> = Mutex::new(());
 
 /// Set once the program has been told to end.
@@ -101,10 +102,19 @@ pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 /// program ends as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
-    let is_kept = path.is_some_and(|path| !is_stream(path));
-    let writing = is_kept.then(|| WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner));
-    let result = write();
-    drop(writing);
+    if path.is_some_and(|path| !is_stream(path)) { to_its_end(write) } else { unless_interrupted(write()) }
+}
+
+/// Does what the program must not leave half done when it is told to end. `work` checks [`is_interrupted`] all the time,
+/// and undoes what it did if it is set: in that case this never returns, and the program ends as interrupted.
+pub(crate) fn to_its_end<T>(work: impl FnOnce() -> T) -> T {
+    let working = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
+    let result = work();
+    drop(working);
+    unless_interrupted(result)
+}
+
+fn unless_interrupted<T>(result: T) -> T {
     while is_interrupted() {
         // The thread that handles the signal ends the program.
         std::thread::park();
@@ -144,6 +154,11 @@ pub(crate) fn print(text: &str) -> Result<(), Failure> {
 /// The failure of writing to standard output.
 pub(crate) fn not_printed(error: io::Error) -> Failure {
     ExportError::new("standard output".as_ref(), ExportErrorKind::from_writing(error)).into()
+}
+
+/// A number of things in words, such as "1 frame" and "2 frames".
+pub(crate) fn counted(number: u64, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
 /// Prints a value as JSON, with a line end.

@@ -49,8 +49,7 @@ impl<'a> Builder<'a> {
         if let Some(name) = &layout.palette {
             self.palette(name)?;
         }
-        let (settings, palette, auto) =
-            (self.scene.settings.clone(), self.scene.palette.clone(), self.scene.auto_palette);
+        let (settings, palette, auto) = (self.scene.settings, self.scene.palette.clone(), self.scene.auto_palette);
         let look = layout.look.as_ref().map(|look| look.0);
         if let Some(look) = look {
             look.lend(&mut self.scene, layout.palette.is_some());

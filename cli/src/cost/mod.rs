@@ -127,7 +127,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         Some(seconds) => format!("at most {seconds} s"),
         None => format!("{} to {} s", settings.seconds, 2.0 * settings.seconds),
     };
-    let compared = if frames.len() == 1 { "1 frame".to_string() } else { format!("{} frames", frames.len()) };
+    let compared = output::counted(frames.len() as u64, "frame");
     output::remark(format_args!("comparing {compared} with the reference, then timing for {times}"));
     let bar = output::bar(1000, "{bar:40} {percent}% {msg}");
     let progress = Progress { bar, step: Mutex::new(None), begun: Instant::now() };

@@ -9,10 +9,10 @@ use mode13h::span::Kernel;
 
 use super::choice::Choice;
 use super::loader::Inputs;
-use super::scenes::counted;
 use super::{Failure, Input, Key, Keys, Panel, Row, Show};
 use crate::input;
 use crate::options::Drawing;
+use crate::output::counted;
 use crate::toggles::Switch;
 use crate::turntable::{Colors, Turntable};
 
@@ -117,11 +117,14 @@ impl Panel for Looks {
             for (place, (shading, triangles)) in shares.into_iter().enumerate() {
                 rows.push(Row::new(if place == 0 { "shadings" } else { "" }, format!("{shading} {triangles}")));
             }
-            let vertices = counted(*vertices as usize, "vertex").replace("vertexs", "vertices");
+            let vertices = counted(*vertices, "vertex").replace("vertexs", "vertices");
             rows.push(Row::new("hidden", format!("{hidden_surfaces}")));
-            rows.push(Row::new("drawn", format!("{drawn} of {}, {vertices}", counted(show.triangles(), "triangle"))));
-            let (spans, pixels) = (raster.spans as usize, raster.pixels as usize);
-            rows.push(Row::new("", format!("{}, {}", counted(spans, "span"), counted(pixels, "pixel"))));
+            rows.push(Row::new(
+                "drawn",
+                format!("{drawn} of {}, {vertices}", counted(show.triangles() as u64, "triangle")),
+            ));
+            let (spans, pixels) = (counted(raster.spans.into(), "span"), counted(raster.pixels.into(), "pixel"));
+            rows.push(Row::new("", format!("{spans}, {pixels}")));
         }
         rows.push(Row::new("kernel", self.kernels.chosen().to_string()));
         rows.push(Row::new("palette", &self.palettes.chosen().0));

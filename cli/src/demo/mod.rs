@@ -477,8 +477,8 @@ mod tests {
     use mode13h_assets::shipped;
 
     use super::loader::tests::inputs;
-    use super::scenes::counted;
     use super::*;
+    use crate::output::counted;
     use crate::overlay::tests::WINDOWS;
 
     /// The demo of a scene after its first frame.

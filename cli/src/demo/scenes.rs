@@ -2,14 +2,10 @@
 
 use super::{Failure, Input, Key, Keys, Panel, Row, Sheet, Show};
 use crate::input;
+use crate::output::counted;
 use crate::overlay;
 
 pub(super) const KEYS: Keys = &[("N, Shift-N", "Next INPUT, previous INPUT")];
-
-/// Formats a number of things, in words.
-pub(super) fn counted(number: usize, thing: &str) -> String {
-    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
-}
 
 /// The input that is shown or being loaded.
 pub(super) struct Scenes {
@@ -55,7 +51,8 @@ impl Panel for Scenes {
 
     fn figures(&self, show: &Show) -> Vec<Row> {
         let objects = show.stage.scene.objects();
-        let counts = format!("{}, {}", counted(objects.len(), "object"), counted(show.triangles(), "triangle"));
+        let counts =
+            format!("{}, {}", counted(objects.len() as u64, "object"), counted(show.triangles() as u64, "triangle"));
         vec![Row::new("scene", &self.name), Row::new("", counts)]
     }
 

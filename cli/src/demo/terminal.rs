@@ -49,7 +49,7 @@ impl Sending {
     /// Shows a stage from the time `seconds` on.
     pub(super) fn run(&self, stage: Turntable, renderer: Renderer, seconds: f64) -> Result<(), Failure> {
         // A termination signal waits until the terminal is restored.
-        output::long_file(None, || {
+        output::to_its_end(|| {
             let protocol = self.to.unwrap_or_else(|| Protocol::of_environment(|name| std::env::var_os(name)));
             let scale = self.scale.unwrap_or_else(scale_that_fits);
             let screen = Screen::open(protocol)?;

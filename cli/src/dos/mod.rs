@@ -108,7 +108,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
         .and_then(|film| hash_of(&film))
         .ok_or_else(|| Failure::words("a mesh of the scene cannot be drawn in 16.16"))?;
     output::bytes(&out, &program)?;
-    output::say(&format!("{}: {} bytes; {frames} frames, {sum:016x}\n", out.display(), program.len()))
+    let frames = output::counted((*frames).into(), "frame");
+    output::say(&format!("{}: {} bytes; {frames}, {sum:016x}\n", out.display(), program.len()))
 }
 
 /// Describes what the film leaves out of a scene, if anything: effects that it needs and the 16.16 path lacks.

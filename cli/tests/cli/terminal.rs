@@ -254,6 +254,26 @@ fn the_demo_in_a_terminal_ends_as_it_began() {
     }
 }
 
+/// A signal ends it, too.
+#[cfg(unix)]
+#[test]
+fn the_demo_in_a_terminal_ends_when_told() {
+    use std::io::Read;
+    let folder = Folder::new();
+    let mut child = folder.program("demo torus --terminal --to kitty --frames 1000000");
+    let mut child = child.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
+    let mut out = child.stdout.take().expect("a pipe");
+    // Frames are shown.
+    out.read_exact(&mut [0; 4096]).expect("frames");
+    let kill = std::process::Command::new("kill").args(["-TERM", &child.id().to_string()]).status();
+    assert!(kill.expect("started").success());
+    let mut rest = Vec::new();
+    out.read_to_end(&mut rest).expect("read");
+    let end = "\x1b\\\x1b[?2026l\x1b_Ga=d,d=I,i=13,q=2\x1b\\\x1b[?25h\x1b[?1049l";
+    assert!(rest.ends_with(end.as_bytes()));
+    assert_eq!(child.wait().expect("waited").code(), Some(130));
+}
+
 #[test]
 fn a_terminal_is_asked_for_what_it_can_do() {
     for (words, said) in [
