@@ -68,7 +68,7 @@ impl Switch {
         if self == Switch::Dither {
             let shown = dither(renderer.plan());
             let next = DitherPattern::ALL.into_iter().find(|pattern| shown.is_none_or(|shown| *pattern > shown));
-            stage.scene.settings.dither = next;
+            (stage.scene.settings.dither, stage.dither) = (next, Some(next));
             renderer.force(Effect::Dither, next.is_none().then_some(false));
             return Ok(());
         }
@@ -134,6 +134,7 @@ mod tests {
     use crate::turntable::Pose;
     use mode13h::mesh::shapes;
     use mode13h::palette::builtin;
+    use mode13h::render::Screen;
     use mode13h::texture::Texture;
     use mode13h::vga::Vga;
     use mode13h_assets::model::with_textures;
@@ -186,6 +187,25 @@ mod tests {
         }
         assert!(failures.is_empty(), "{failures:#?}");
     }
+
+    /// Other keys leave dither as it was chosen.
+    #[test]
+    fn dither_outlasts_a_change_of_palette_and_of_images() {
+        let mut stage = Turntable::of_scene(Scene::showing(shapes::torus(24, 12)));
+        let mut renderer = Renderer::new();
+        for turn in 0..2 * Switch::MAX_STATES {
+            Switch::Dither.turn(&mut stage, &mut renderer).expect("a legal scene");
+            let mut state = |stage: &Turntable| {
+                renderer.make_plan(&stage.scene, Screen::MODE_13H).expect("a legal scene");
+                Switch::Dither.state(&renderer)
+            };
+            let chosen = state(&stage);
+            stage.set_colors(&builtin::GREY.clone().into()).expect("a legal scene");
+            stage.set_images(turn % 2 == 0).expect("a legal scene");
+            assert_eq!(state(&stage), chosen);
+        }
+    }
+
     /// Tests that a model whose image T has removed shows shades in order, not the palette's entries one after the
     /// other, in a palette made for what is seen and in one without ramps.
     #[test]
