@@ -154,6 +154,10 @@ await suite.run(async () => {
   check("a link shows the same picture", (await hash(other)) === (await hash(tab)), link);
   check("and has the same budget", (await other.evaluate("page.state.maxError")) === 2);
   check("a link has nothing to say", other.said.length === 0, other.said.join("; "));
+  await other.evaluate("page.open(`${page.state.toml}\\n# ${Array.from({ length: 250_000 }, () => Math.random().toString(36)[2]).join('')}`, page.state.name)");
+  await other.evaluate("page.link()");
+  const length = await other.evaluate("location.hash.length");
+  check("a link holds a long scene", length > 200_000, `${length} letters`);
 
   // A dropped model: OBJ, MTL and PNG together.
   const texture = await tab.evaluate("(async () => { const c = new OffscreenCanvas(8, 8); const x = c.getContext('2d'); x.fillStyle = '#c04020'; x.fillRect(0, 0, 8, 8); x.fillStyle = '#20a060'; x.fillRect(0, 0, 4, 4); x.fillRect(4, 4, 4, 4); return [...new Uint8Array(await (await c.convertToBlob()).arrayBuffer())]; })()");
