@@ -65,7 +65,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     outside(*pixel, *row, screen).map_or(Ok(()), |error| Err(Failure::words(error)))?;
     let input = drawing.input(input)?;
     let name = input.name().to_string();
-    let mut stage = drawing.still(input)?;
+    let mut stage = drawing.still(input, false)?;
     out.as_deref().map_or(Ok(()), read_files::spare)?;
     let at = moment.of_picture(&stage.scene);
     stage.show(at, Pose::FIRST);

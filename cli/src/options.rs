@@ -250,16 +250,20 @@ impl Drawing {
     }
 
     /// Makes the stage of INPUT for a single picture: a model file is framed by its pose there, unless `--camera`
-    /// places the camera.
-    pub(crate) fn still(&self, input: Input) -> Result<Turntable, Failure> {
+    /// places the camera. An automatic palette leaves out what is seen only if it is turned, unless it `turns`.
+    pub(crate) fn still(&self, input: Input, turns: bool) -> Result<Turntable, Failure> {
         let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
-        let mut stage = self.stage(input)?;
+        let mut stage = self.stage_that(turns, input)?;
         stage.frames_still = is_reframed;
         Ok(stage)
     }
 
     /// Makes the stage of INPUT, drawn with these options.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
+        self.stage_that(true, input)
+    }
+
+    fn stage_that(&self, turns: bool, input: Input) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let mut look_of_scene = None;
         let (mut stage, usual) = match input {
@@ -281,6 +285,7 @@ impl Drawing {
                 (Turntable::of_moving_scene(*scene, playbacks), colors)
             }
         };
+        stage.turns = turns;
         if let Some(zoom) = self.zoom {
             stage.zoom = zoom;
         }

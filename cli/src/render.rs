@@ -146,7 +146,8 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     }
     let input = options.drawing.input(&options.input)?;
     let is_still = matches!(out, Out::Pictures(_, 1) | Out::Terminal(_));
-    let stage = if is_still { options.drawing.still(input) } else { options.drawing.stage(input) }?;
+    let stage =
+        if is_still { options.drawing.still(input, options.turn.is_some()) } else { options.drawing.stage(input) }?;
     if let Out::Film(film) = &mut out {
         film.lasts(stage.scene.duration);
     }

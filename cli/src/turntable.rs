@@ -63,6 +63,8 @@ pub(crate) struct Turntable {
     shown: Shown,
     /// True if the camera frames each pose of the model by itself, for single pictures, not the whole turn.
     pub(crate) frames_still: bool,
+    /// True if it may be turned, so that an automatic palette is for all of its sides.
+    pub(crate) turns: bool,
     /// The camera's own place.
     camera: Camera,
     /// Enlargement, independent of the pose.
@@ -171,6 +173,7 @@ impl Turntable {
             scene,
             shown,
             frames_still: false,
+            turns: true,
             camera,
             zoom: 1.0,
             materials,
@@ -196,12 +199,18 @@ impl Turntable {
     /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself, time passes instead,
     /// with 360 degrees for one round; around a scene that does not move, the camera circles.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
-        let moves = !self.scene.motions.is_empty() || self.scene.palette_animation.is_some();
         match self.shown {
-            _ if !self.playbacks.is_empty() => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
-            Shown::Scene if moves => (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
-            _ => (seconds, Pose { turn: degrees.to_radians(), ..Pose::FIRST }),
+            Shown::Model if self.playbacks.is_empty() => {}
+            Shown::Scene if !self.moves() => {}
+            _ => return (seconds + degrees / 360.0 * self.scene.duration, Pose::FIRST),
         }
+        (seconds, Pose { turn: degrees.to_radians(), ..Pose::FIRST })
+    }
+
+    /// Returns whether time changes the picture.
+    fn moves(&self) -> bool {
+        let Scene { motions, palette_animation, .. } = &self.scene;
+        !(self.playbacks.is_empty() && motions.is_empty() && palette_animation.is_none())
     }
 
     /// Moves everything to where it is at a time, in seconds, seen in a pose.
@@ -343,7 +352,9 @@ impl Turntable {
     /// Makes a palette for what is visible over a round.
     fn made(&self) -> Result<AutomaticPalette, RenderError> {
         let mut scene = self.at_first();
-        if self.playbacks.is_empty() {
+        let camera = scene.camera;
+        let is_circled = self.turns && matches!(self.shown, Shown::Scene) && !self.moves();
+        if self.playbacks.is_empty() && !is_circled {
             return auto_palette::of_scene(&scene);
         }
         let round = scene.duration;
@@ -352,8 +363,12 @@ impl Turntable {
             // In a second round the scene also turns, because the user may turn it.
             scene.duration *= 2.0;
         }
-        let periods: Vec<f64> = self.playbacks.iter().map(|playback| playback.clip().duration()).collect();
+        let periods = self.playbacks.iter().map(|playback| playback.clip().duration());
+        let periods: Vec<f64> = periods.chain(is_circled.then_some(round)).collect();
         auto_palette::of_moving_scene(&scene, &periods, |scene, seconds| {
+            if is_circled {
+                scene.camera = gone_round(camera, TAU * seconds / round, 0.0);
+            }
             self.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
             if is_model && seconds > round {
                 let turn = Angle::from_radians(TAU * (seconds / round - 1.0));

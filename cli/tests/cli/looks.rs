@@ -94,6 +94,21 @@ fn a_scene_has_a_look_and_its_own_keys_come_before_it() {
     }
 }
 
+/// An automatic palette has colours for all sides of a scene that the camera circles, and for nothing else if it does not.
+#[test]
+fn a_palette_has_colours_for_all_sides() {
+    let folder = Folder::new();
+    let sphere = |side: f32, color| {
+        format!("[[objects]]\nshape = 'sphere'\nposition = [0, 0, {side}]\nscale = 2\nmaterial.color = '{color}'\n")
+    };
+    let light = "palette = 'auto'\ncamera = { eye = [0, 0, 8] }\nlights = [{ sun = [0, 1, 0.2], color = '#ffffe0' }]\n";
+    folder.put("sides.toml", [light, &sphere(1.0, "#ff0000"), &sphere(-3.0, "#00ff00")].concat());
+    let is_green = |color: &Rgb| color.g > color.r;
+    let sides = |words: &str| picture(&folder, &format!("sides.toml {words}"));
+    assert!(sides("--turn 180").colors().iter().filter(|color| is_green(color)).count() > 10_000);
+    assert!(sides("--turn 0").palette.iter().any(is_green) && !sides("").palette.iter().any(is_green));
+}
+
 /// An object whose colour comes only from its ramp keeps it in a palette without ramps.
 #[test]
 fn the_colour_of_a_ramp_is_kept() {
