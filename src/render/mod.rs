@@ -193,7 +193,8 @@ impl Renderer {
             return None;
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::has_custom_response(object))?;
-        let faces = self.cache.states.get(object)?.faces(object_in_scene, plan, self.kernel)?;
+        let state = self.cache.states.get(object).filter(|state| !state.stale)?;
+        let faces = state.faces(object_in_scene, plan, self.kernel)?;
         Some(faces.linear_error())
     }
 

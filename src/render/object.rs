@@ -139,6 +139,7 @@ struct Inputs<'a> {
 /// The parts of an object's [`Outputs`] that stay valid until it gets another mesh.
 #[derive(Debug, Default)]
 struct OfMesh {
+    has_vertices: bool,
     /// The sizes of the surfaces' images, if the columns hold the mesh's texture coordinates for them.
     texture_sizes: Vec<Option<[u32; 2]>>,
     has_face_points: bool,
@@ -166,7 +167,7 @@ struct Outputs {
 pub(super) struct ObjectState {
     source: Option<VertexInputs>,
     /// True if the source has changed since the vertices were computed.
-    stale: bool,
+    pub(super) stale: bool,
     /// The plan that the vertices were computed by, without its reasons; `None` if they are not valid.
     pub(super) made_by: Option<Stages>,
     pub(super) materials: Vec<SurfaceMaterial>,
@@ -231,7 +232,8 @@ impl ObjectState {
         let mut stages = *plan.stages();
         // These do not affect the vertices.
         (stages.vertices, stages.is_out_of_sight) = (VertexStage::Make, false);
-        if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) {
+        let has_vertices = core::mem::replace(&mut self.outputs.of_mesh.has_vertices, true);
+        if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) && has_vertices {
             return false;
         }
         (self.made_by, self.stale) = (Some(stages), false);
@@ -301,9 +303,9 @@ impl ObjectState {
         self.outputs.columns.triangles(&self.geometry(object))
     }
 
-    /// Its faces, ready to be drawn; `None` without vertices of the object as it is.
+    /// Its faces, ready to be drawn; `None` without vertices of its mesh.
     pub(super) fn faces<'a>(&'a self, object: &'a Object, plan: &'a ObjectPlan, kernel: Kernel) -> Option<Faces<'a>> {
-        self.made_by.filter(|_| !plan.stages().is_out_of_sight && !self.stale)?;
+        self.made_by.filter(|_| !plan.stages().is_out_of_sight && self.outputs.of_mesh.has_vertices)?;
         let source = self.source.as_ref().filter(|source| Shared::ptr_eq(&source.mesh, object.shared_mesh()))?;
         Some(Faces {
             shading: plan.shading(),
