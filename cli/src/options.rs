@@ -285,7 +285,7 @@ impl Drawing {
                 (Turntable::of_moving_scene(*scene, playbacks), colors)
             }
         };
-        stage.turns = turns;
+        (stage.turns, stage.in_integers) = (turns, self.pipeline.arithmetic == Some(VertexPath::Integer));
         if let Some(zoom) = self.zoom {
             stage.zoom = zoom;
         }
@@ -313,9 +313,6 @@ impl Drawing {
             }
         });
         let colors = asked.or(of_look).or(usual);
-        if colors == Some(Colors::Auto) && self.pipeline.arithmetic == Some(VertexPath::Integer) {
-            stage.only_what_integers_draw();
-        }
         if let Some(colors) = &colors {
             stage.set_colors(colors)?;
         }

@@ -65,6 +65,8 @@ pub(crate) struct Turntable {
     pub(crate) frames_still: bool,
     /// True if it may be turned, so that an automatic palette is for all of its sides.
     pub(crate) turns: bool,
+    /// True if it is drawn by the 16.16 path, so that an automatic palette is for what that draws.
+    pub(crate) in_integers: bool,
     /// The camera's own place.
     camera: Camera,
     /// Enlargement, independent of the pose.
@@ -174,6 +176,7 @@ impl Turntable {
             shown,
             frames_still: false,
             turns: true,
+            in_integers: false,
             camera,
             zoom: 1.0,
             materials,
@@ -384,18 +387,27 @@ impl Turntable {
         let mut scene = stage.scene;
         scene.palette.clone_from(&self.palette);
         scene.objects_mut().iter_mut().zip(self.materials_shown()).for_each(|(object, own)| object.materials = own);
+        if self.in_integers {
+            only_what_integers_draw(&mut scene);
+        }
         scene
     }
 
-    /// Leaves out effects that the 16.16 path does not draw, so that no palette is made for them.
-    pub(crate) fn only_what_integers_draw(&mut self) {
-        (self.scene.fog, self.scene.settings.channels) = (None, None);
-        for light in self.scene.lights_mut() {
-            *light = light.with_intensity(light.brightness()).with_color([1.0; 3]);
-        }
-        for material in self.materials.iter_mut().flatten() {
-            (material.texture, material.environment, material.blend) = (None, None, Blend::Opaque);
-        }
+    /// Lets the 16.16 path draw it: an automatic palette is made again.
+    pub(crate) fn draw_in_integers(&mut self) -> Result<(), RenderError> {
+        (self.in_integers, self.automatic) = (true, None);
+        if self.colors == Some(Colors::Auto) { self.set_colors(&Colors::Auto) } else { Ok(()) }
+    }
+}
+
+/// Removes effects that the 16.16 path does not draw.
+fn only_what_integers_draw(scene: &mut Scene) {
+    (scene.fog, scene.settings.channels) = (None, None);
+    for light in scene.lights_mut() {
+        *light = light.with_intensity(light.brightness()).with_color([1.0; 3]);
+    }
+    for material in scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials) {
+        (material.texture, material.environment, material.blend) = (None, None, Blend::Opaque);
     }
 }
 

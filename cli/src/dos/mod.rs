@@ -95,6 +95,7 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(losses) = losses(&mut stage, &renderer)? {
         output::note(losses);
     }
+    stage.draw_in_integers()?;
     let ignored = drawing.ignored_by_dos();
     if !ignored.is_empty() {
         output::note(format_args!("ignored, because the program computes in 16.16: {}", ignored.join(", ")));

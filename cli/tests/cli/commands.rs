@@ -14,6 +14,7 @@ use mode13h::span::Kernel;
 use mode13h::vga::Vga;
 use mode13h_assets::palette_file;
 use mode13h_assets::shipped;
+use mode13h_conformance::hash::{START, fnv_1a};
 use serde_json::Value;
 
 #[cfg(unix)]
@@ -884,6 +885,21 @@ fn dos_says_what_is_left_out() {
         said("torus --kernel portable --mapping affine --vertex-bits 0"),
         "mode13h: ignored, because the program computes in 16.16: --mapping, --kernel, --vertex-bits\n"
     );
+}
+
+/// The DOS program shows what `render` draws in 16.16, in the same colours, automatic palettes included.
+#[test]
+fn dos_shows_what_render_does() {
+    let folder = Folder::new();
+    for input in ["torus", "crate", "rgb", "fog --palette auto", "torus --look ps1"] {
+        folder.run(&format!("render {input} --arithmetic fixed --time 0 -o x.png"));
+        let Png { pixels, palette, .. } = Png::decode(&folder.read("x.png"));
+        let dac: Vec<u8> = palette.iter().flat_map(|color| [color.r, color.g, color.b]).map(|c| c >> 2).collect();
+        let hash = fnv_1a(fnv_1a(START, &pixels), &dac);
+        let said = folder.run(&format!("dos {input} -o a.exe --force --frames 1")).stdout;
+        let said = String::from_utf8(said).expect("text");
+        assert!(said.ends_with(&format!("1 frame, {hash:016x}\n")), "{input}: {said}");
+    }
 }
 
 #[test]
