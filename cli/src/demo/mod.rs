@@ -405,7 +405,8 @@ impl Demo {
             sheet.message(overlay::TEXT, &said);
         }
         PANELS.iter().for_each(|(_, panel)| panel(panels).lay_over(show, &mut sheet));
-        let is_alone = !(show.help.is_open && show.figures.is_open);
+        // Nothing else is at the sides.
+        let is_alone = !(show.help.is_open && show.figures.is_open || panels.maps.is_on || show.divider.is_some());
         if show.figures.is_open {
             let rows: Vec<Row> = PANELS.iter().flat_map(|(_, panel)| panel(panels).figures(show)).collect();
             show.figures.pages = sheet.panel(Side::Left, &rows, is_alone, show.figures.page, "I");
@@ -549,6 +550,29 @@ mod tests {
                             );
                         }
                     }
+                }
+            }
+        }
+    }
+
+    /// With the error map and two shadings there is something at the right side, which nothing covers.
+    #[test]
+    fn figures_cover_nothing_at_the_other_side() {
+        let mut demo = demo("torus");
+        demo.show.halves[0].shading = ShadingChoice::new("flat".parse().expect("a shading"), None);
+        demo.show.halves[1].shading = ShadingChoice::new("gouraud-8.8-reseeded".parse().expect("a shading"), None);
+        for (map, divider) in [(true, None), (false, Some(160)), (true, Some(160))] {
+            (demo.panels.maps.is_on, demo.show.divider) = (map, divider);
+            demo.draw().expect("a legal scene");
+            for size in WINDOWS.into_iter().chain([(320, 240), (400, 300)]) {
+                for (help, figures) in [(true, false), (false, true), (true, true)] {
+                    (demo.show.help, demo.show.figures) = (Pages::default(), Pages::default());
+                    (demo.show.help.is_open, demo.show.figures.is_open) = (help, figures);
+                    assert_eq!(
+                        demo.sheet(size).faults(),
+                        [""; 0],
+                        "map {map}, {divider:?}, {size:?}, {help} {figures}"
+                    );
                 }
             }
         }

@@ -36,9 +36,13 @@ impl Timing {
         }
     }
 
-    /// The time as text, and whether the last frame was drawn.
+    /// The time as text, if there is one, and whether the last frame was drawn.
     pub(super) fn in_words(&self) -> String {
-        format!("{self}{}", if self.is_redrawn { "" } else { ", not redrawn" })
+        match (self.is_redrawn, self.frame == 0.0) {
+            (true, _) => self.to_string(),
+            (false, true) => "not redrawn".to_string(),
+            (false, false) => format!("{self}, not redrawn"),
+        }
     }
 }
 
@@ -55,6 +59,8 @@ mod tests {
     #[test]
     fn a_frame_that_was_there_already_counts_for_the_rate_alone() {
         let mut timing = Timing::default();
+        timing.add(None, 0.0);
+        assert_eq!(timing.in_words(), "not redrawn");
         timing.add(Some(0.010), 0.0);
         for (taken, now) in [(Some(0.002), 0.1), (None, 0.2), (None, 0.3), (Some(0.004), 0.5)] {
             timing.add(taken, now);
