@@ -34,7 +34,7 @@
  *
  * FLOAT OR FIXED. m13_triangle and m13_draw read 32-bit floats. m13_triangle_x and m13_draw_x read 32-bit integers in 16.16
  * (65536 is 1.0), and use no floating point where the processor has no FPU. Both have the same layouts, and draw the same
- * pixels for the same numbers.
+ * pixels for the same numbers, except that where triangles are clipped, their edges and shades may be rounded differently.
  *
  *     value             float               16.16
  *     x, y              pixels              pixels
@@ -284,7 +284,7 @@ int m13_palette_ramp(uint8_t palette[768], uint32_t first, uint32_t entries, uin
 /* The index of the nearest colour, the first of equally near ones; or a code below 0. */
 int m13_palette_nearest(const uint8_t palette[768], uint32_t rgb);
 
-/* The palette `part` 256ths of the way to another, 0 to 256. `out` may be either of them. */
+/* The palette `part` 256ths of the way to another; more than 256 counts as 256. `out` may be either of them. */
 int m13_palette_fade(const uint8_t palette[768], const uint8_t other[768], uint32_t part, uint8_t out[768]);
 
 /* Rotates `entries` entries from `first` on by `steps`, upwards if positive. */

@@ -63,7 +63,9 @@ struct Mesh : m13_mesh {
     Mesh &with(std::span<const Index> list) noexcept
     {
         static_assert(sizeof(Index) <= 4 && sizeof(Index) != 3, "8, 16 or 32 bits");
-        indices = list.data();
+        // Without memory, an empty list would be none, which is every three vertices.
+        static constexpr Index nothing{};
+        indices = list.empty() ? &nothing : list.data();
         index_bits = 8 * sizeof(Index);
         index_count = static_cast<std::uint32_t>(list.size());
         return *this;

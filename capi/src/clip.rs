@@ -102,7 +102,7 @@ pub(crate) fn clip<D: Door, K: Kept>(
     }
     let mut ready = [K::default(); MOST];
     for (to, corner) in ready.iter_mut().zip(&polygon).take(count) {
-        match corner.ready.or_else(|| corner.project::<D>(near)) {
+        match corner.ready.or_else(|| corner.in_band::<D>().project::<D>(near)) {
             Some(corner) => *to = corner,
             None => return,
         }
@@ -124,7 +124,9 @@ fn fan<K: Kept>(corners: &[K; MOST], count: usize, triangle: &mut dyn FnMut([K; 
     let part = |apex: usize, i: usize| [apex, apex + i - 1, apex + i].map(|i| corners[i % count % MOST]);
     let sign = (2..count).map(|i| doubled_area(&part(0, i))).sum::<i64>().signum();
     let is_whole = |apex: &usize| (2..count).all(|i| doubled_area(&part(*apex, i)).signum() * sign >= 0);
-    let apex = (0..count).find(is_whole).unwrap_or(0);
+    // The same one whichever corner comes first.
+    let place = |apex: &usize| corners.get(*apex).map(|corner| (corner.vertex().x(), corner.vertex().y()));
+    let apex = (0..count).filter(is_whole).min_by_key(place).unwrap_or(0);
     for i in 2..count {
         let part = part(apex, i);
         if doubled_area(&part).signum() * sign > 0 {

@@ -100,9 +100,8 @@ pub(crate) struct Wide<N, K> {
     pub(crate) ready: Option<K>,
 }
 
-/// Pixels from the frame's corner to where triangles are cut. The guard band reaches one pixel farther, so that
-/// rounding cannot take a cut point beyond it.
-pub(crate) const LIMIT: i32 = 4_095;
+/// Pixels from the frame's corner to where triangles are cut: the end of the guard band, and of the largest frame.
+const LIMIT: i32 = 4_096;
 
 /// A format of vertices: how they are read, projected and cut.
 pub(crate) trait Door {
@@ -223,15 +222,13 @@ impl Door for Floats {
     }
 
     /// The mean of both, each weighted with the other's distance, so that no digits are lost between numbers of the
-    /// same sign.
+    /// same sign. Rounding may not take it beyond either: two that are at the near plane are cut there.
     fn between(a: f64, b: f64, inside: f64, outside: f64, by: Option<[f64; 2]>) -> f64 {
-        match by {
+        let point = match by {
             None => (b * inside - a * outside) / (inside - outside),
-            Some([of, to]) => {
-                let part = inside / (inside - outside) * (of / to);
-                (a + (b - a) * part).max(a.min(b)).min(a.max(b))
-            }
-        }
+            Some([of, to]) => a + (b - a) * (inside / (inside - outside) * (of / to)),
+        };
+        point.max(a.min(b)).min(a.max(b))
     }
 }
 
@@ -287,7 +284,7 @@ impl Door for Fixed {
         }
     }
 
-    /// Rounded to the nearest, halves upward. Numbers are below 2⁴⁵ (12 bits of the limit, 32 of w and a sign),
+    /// Rounded to the nearest, halves upward. Numbers are below 2⁴⁵ (13 bits of the limit, 31 of w and a sign),
     /// products below 2⁹².
     fn between(a: i64, b: i64, inside: i64, outside: i64, by: Option<[i64; 2]>) -> i64 {
         let (a, b, inside, outside) = (i128::from(a), i128::from(b), i128::from(inside), i128::from(outside));
@@ -329,8 +326,8 @@ pub(crate) struct Parts {
 }
 
 impl Source {
-    /// Checks all of a mesh except the values of its indices.
-    pub(crate) fn new(mesh: Mesh, has_shade: bool) -> Outcome<(Self, Parts)> {
+    /// Checks all of a mesh except the values of its indices. Vertices with w need no depth.
+    pub(crate) fn new(mesh: Mesh, (has_shade, has_depth): (bool, bool)) -> Outcome<(Self, Parts)> {
         let Mesh { stride, position, depth, shade, texture, fog, slope, .. } = mesh;
         if mesh.homogeneous > 1 {
             return Err(Refusal::Value);
@@ -341,7 +338,7 @@ impl Source {
             _ => offset.checked_add(4 * numbers).is_some_and(|end| end <= stride),
         };
         let all = fits(position, 2 + mesh.homogeneous, true)
-            && fits(depth, 1, false)
+            && fits(depth, 1, has_depth && mesh.homogeneous == 0)
             && fits(shade, 1, has_shade)
             && fits(texture, 2, false)
             && fits(fog, 1, false)
@@ -533,6 +530,17 @@ impl Source {
 }
 
 impl<N: Copy, K: Kept> Wide<N, K> {
+    /// The corner moved to the end of the guard band if it is beyond, as rounding may take one that was cut.
+    pub(crate) fn in_band<D: Door<Wide = N>>(self) -> Self
+    where
+        N: PartialOrd,
+    {
+        let [least, most] = [false, true].map(|positive| D::at_limit(self.w, positive));
+        let inside = |c: N| if c < least { least } else { c };
+        let inside = |c: N| if c > most { most } else { inside(c) };
+        Self { x: inside(self.x), y: inside(self.y), ..self }
+    }
+
     /// The corner in the rasterizer's form; `None` if it must be clipped.
     pub(crate) fn project<D: Door<Wide = N>>(&self, near: Option<N>) -> Option<K> {
         let Self { x, y, w, depth, values, .. } = self;

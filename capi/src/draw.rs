@@ -445,7 +445,8 @@ unsafe fn draw_by(
     let wants_effects =
         pointers.iter().any(|table| !table.is_null()) || material.dither > 0 || material.keep_depth == 0;
     let has_shade = !matches!(interpolation, Interpolation::Flat(_)) && material.slope_table.is_null();
-    let (source, parts) = Source::new(mesh, has_shade)?;
+    let has_depth = material.shading == 4 || !matches!(checked.depth, Depth::None);
+    let (source, parts) = Source::new(mesh, (has_shade, has_depth))?;
     for (pointer, length) in [(mesh.vertices, parts.vertices), (mesh.indices, parts.indices)] {
         if length > 0 {
             checked.apart_from(Bytes::new(pointer, length)?)?;

@@ -186,6 +186,7 @@ static void triangles(m13_context *context)
     m13_mesh mesh;
     m13_material material;
     m13_stats stats = { sizeof stats, 1, 1, 1, 1, 1 };
+    uint16_t cells[8 * 4] = { 0 };
     IS(M13_OK, m13_target_init(&t, pixels, 32, 8, 4, 8));
     IS(M13_OK, m13_triangle(&t, half, M13_GOURAUD, 0));
     CHECK(memcmp(pixels, first_row, 8) == 0);
@@ -212,6 +213,12 @@ static void triangles(m13_context *context)
     mesh.shade = offsetof(m13_vertex, shade);
     IS(M13_OK, m13_draw(&t, &mesh, &material, NULL, &stats));
     CHECK(stats.triangles == 1 && stats.refused == 0 && stats.pixels == 16 && stats.covered == 16);
+    material.shading = M13_GOURAUD_PERSPECTIVE;
+    IS(M13_LAYOUT, m13_draw(&t, &mesh, &material, NULL, NULL)); /* no depth */
+    material.shading = M13_GOURAUD;
+    IS(M13_OK, m13_target_depth(&t, cells, sizeof cells, 16));
+    IS(M13_LAYOUT, m13_draw(&t, &mesh, &material, NULL, NULL));
+    IS(M13_OK, m13_target_depth(&t, NULL, 0, 0));
     mesh.shade = 13;
     IS(M13_LAYOUT, m13_draw(&t, &mesh, &material, NULL, &stats));
     mesh.shade = M13_ABSENT - 1;

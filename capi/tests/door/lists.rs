@@ -239,15 +239,16 @@ fn clipped_neighbours_leave_no_hole() {
     let counts: Vec<u8> = (0..65_536).map(|i| ((i & 255) as u8).saturating_add(1)).collect();
     let mut random = Random::named("clipped in C");
     let (mut drawn, mut clipped) = (0, 0);
-    for _ in 0..60 {
+    for round in 0..600 {
         // A grid on a plane in space: X, Y and w linear in both directions, so some of it is behind the eye.
         let of = |most: f64, random: &mut Random| [0; 3].map(|_| random.around_zero(most));
         let (x, y, w) = (of(3_000.0, &mut random), of(2_000.0, &mut random), of(12.0, &mut random));
         let n = 1 + random.below(14);
+        // Sixteenths, so that the sheet is flat, and the float and the 16.16 functions see the same values.
+        let part = |c: f64| (c * 16.0).round() / 16.0;
         let linear = |[a, b, c]: [f64; 3], i: usize, j: usize| {
-            // Whole numbers of 1/65,536, so that the float and the 16.16 functions see the same values.
-            let value = a + b * (i as f64 / n as f64 * 2.0 - 1.0) + c * (j as f64 / n as f64 * 2.0 - 1.0);
-            ((value * 16.0).round() / 16.0) as f32
+            let [across, down] = [b, c].map(|c| part(2.0 * c / n as f64));
+            (part(a - b - c) + across * i as f64 + down * j as f64) as f32
         };
         let mut grid = Vec::new();
         for j in 0..=n {
@@ -264,11 +265,12 @@ fn clipped_neighbours_leave_no_hole() {
             }
         }
         let grid_x: Vec<[i32; 3]> = grid.iter().map(|at| at.map(|c| (f64::from(c) * 65_536.0) as i32)).collect();
+        let near = [0.5, 0.1, 0.01, 0.3, 3.0, 7.0][round % 6];
         for is_fixed in [false, true] {
             let mut pixels = vec![0_u8; 320 * 200];
             let canvas = target(&mut pixels, 320, 200, 320);
             let mut made = if is_fixed { mesh(&grid_x) } else { mesh(&grid) };
-            (made.homogeneous, made.near_w, made.near_w_x) = (1, 0.5, 0x8000);
+            (made.homogeneous, made.near_w, made.near_w_x) = (1, near, (near * 65_536.0) as i32);
             (made.indices, made.index_count) = (indices.as_ptr().cast(), indices.len() as u32);
             let mut of = material(0);
             of.blend_table = counts.as_ptr();
@@ -291,4 +293,99 @@ fn clipped_neighbours_leave_no_hole() {
     }
     println!("{drawn} pixels, {clipped} sheets clipped");
     assert!(drawn > 100_000 && clipped > 20);
+}
+
+/// Huge triangles and such as reach behind the eye are not lost, whatever the near plane: in the middle of the frame each
+/// covers what it covers in exact arithmetic.
+#[test]
+fn clipped_triangles_are_drawn() {
+    let mut random = Random::named("huge triangles of C");
+    let mut covered = 0;
+    for round in 0..40_000 {
+        let near = [0.1, 0.01, 0.3, 0.03, 0.7][round % 5];
+        let corners: [[f32; 3]; 3] = core::array::from_fn(|_| {
+            let [x, y, w] = [40_000.0, 30_000.0, 60.0].map(|most| random.around_zero(most) * near);
+            // Whole numbers of 1/65,536 in both formats.
+            [x, y, w].map(|c| ((c * 65_536.0).round() / 65_536.0) as f32)
+        });
+        let corners_x = corners.map(|at| at.map(|c| (f64::from(c) * 65_536.0) as i32));
+        // The middle of a pixel is a sum of the corners. It is in front of the near plane, and eight pixels inside of all
+        // edges: in 16.16 a point cut at the end of the guard band may be off by three.
+        let middle = [160.5, 100.5, 1.0];
+        let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let [a, b, c] = corners.map(|at| at.map(f64::from));
+        let edges = [cross(a, b), cross(b, c), cross(c, a)];
+        let whole = dot(a, edges[1]);
+        let is_inside = edges.iter().all(|edge| dot(middle, *edge) * whole.signum() > 8.0 * edge[0].hypot(edge[1]));
+        let w = whole / edges.iter().map(|edge| dot(middle, *edge)).sum::<f64>();
+        if !is_inside || w < 1.01 * near {
+            continue;
+        }
+        covered += 1;
+        for is_fixed in [false, true] {
+            let mut pixels = vec![0_u8; 320 * 200];
+            let canvas = target(&mut pixels, 320, 200, 320);
+            let mut made = if is_fixed { mesh(&corners_x) } else { mesh(&corners) };
+            (made.homogeneous, made.near_w, made.near_w_x) = (1, near as f32, (near * 65_536.0) as i32);
+            let mut of = material(0);
+            of.color = 77;
+            let draw = if is_fixed { m13_draw_x } else { m13_draw };
+            // SAFETY: the structs are valid, and so is the memory they name.
+            let code = unsafe { draw(&canvas, &made, &of, core::ptr::null_mut(), core::ptr::null_mut()) };
+            assert_eq!((code, pixels[100 * 320 + 160]), (OK, 77), "{corners:?}, near {near}, {is_fixed}");
+        }
+    }
+    println!("{covered} triangles");
+    assert!(covered > 500);
+}
+
+/// The largest frames are filled to their last column and row.
+#[test]
+fn the_largest_frames_are_filled() {
+    for (width, height) in [(4_096, 3), (3, 4_096)] {
+        for is_fixed in [false, true] {
+            let mut pixels = vec![0_u8; 4_096 * 3];
+            let canvas = target(&mut pixels, width, height, width as usize);
+            let corners = [[-100.0_f32, -100.0], [20_000.0, -100.0], [-100.0, 20_000.0]];
+            let corners_x = corners.map(|at| at.map(|c| c as i32 * 65_536));
+            let mut of = material(0);
+            of.color = 77;
+            let made = if is_fixed { mesh(&corners_x) } else { mesh(&corners) };
+            let draw = if is_fixed { m13_draw_x } else { m13_draw };
+            // SAFETY: the structs are valid, and so is the memory they name.
+            assert_eq!(unsafe { draw(&canvas, &made, &of, core::ptr::null_mut(), core::ptr::null_mut()) }, OK);
+            assert!(pixels.iter().all(|pixel| *pixel == 77), "{width} x {height}, {is_fixed}");
+        }
+    }
+}
+
+/// The order of the corners makes no difference, even if a triangle is clipped.
+#[test]
+fn the_order_of_the_corners_makes_no_difference() {
+    let mut random = Random::named("corners in any order");
+    for round in 0..2_000 {
+        let corners: [_; 3] = core::array::from_fn(|_| mode13h_capi::abi::Vertex {
+            x: random.around_zero(6_000.0) as f32,
+            y: random.around_zero(6_000.0) as f32,
+            depth: random.unit() as f32,
+            shade: (random.unit() * 255.0) as f32,
+        });
+        let drawn = |order: [usize; 3], shading| {
+            let mut pixels = vec![0_u8; 320 * 200];
+            let canvas = target(&mut pixels, 320, 200, 320);
+            let corners = order.map(|i| corners[i]);
+            // SAFETY: three corners.
+            assert_eq!(unsafe { m13_triangle(&canvas, corners.as_ptr(), shading, 77) }, OK);
+            pixels
+        };
+        for shading in [1, 4] {
+            let first = drawn([0, 1, 2], shading);
+            for order in [[1, 2, 0], [2, 0, 1], [0, 2, 1], [1, 0, 2]] {
+                assert!(drawn(order, shading) == first, "round {round}, {order:?}, shading {shading}");
+            }
+        }
+    }
 }
