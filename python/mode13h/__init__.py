@@ -101,6 +101,11 @@ def render(
     points = _numbers("vertices", vertices, ("n", 3))
     _finite("vertex", points)
     indices = _indices(faces, len(points))
+    # Vertices of no face have no part in the picture, nor in the model's size.
+    used = np.zeros(len(points), bool)
+    used[indices] = True
+    indices = (np.cumsum(used, dtype=indices.dtype) - 1).astype(indices.dtype)[indices]
+    given, points = len(points), points[used]
     # Into the unit cube around the origin, before anything is rounded to float32. Scaling by a power of two is exact.
     low, high = points.min(axis=0), points.max(axis=0)
     middle = low / 2 + high / 2
@@ -126,11 +131,16 @@ def render(
         "light": _numbers("light", light, (3,)).tolist(),
         "shading": _text("shading", shading),
         "max_error": None if max_error is None else float(_numbers("max_error", max_error, ())),
-        "palette": palette if isinstance(palette, str) else _bytes("palette", palette, (256, 3)).tobytes(),
+        "palette": _text("palette", palette) if isinstance(palette, str) else _bytes("palette", palette, (256, 3)).tobytes(),
     }
-    own = None if normals is None else _numbers("normals", normals, (len(points), 3))
+    own = None if normals is None else _numbers("normals", normals, (given, 3))
     if own is not None:
         _finite("the normal of vertex", own)
+        own = own[used]
+        # Lengths whose squares 32 bits cannot hold.
+        longest = np.abs(own).max(axis=1, keepdims=True)
+        is_ordinary = (longest == 0) | (longest > 1e-18) & (longest < 1e18)
+        own = own / np.where(is_ordinary, 1, longest)
     normal_bytes = None if own is None else _floats(own)
     frame, colors = _engine.draw(_floats(moved(points)), indices.tobytes(), normal_bytes, view, look)
     return _writable(frame, (200, 320)), _writable(colors, (256, 3))
@@ -226,7 +236,8 @@ def _floats(array: NDArray[np.float64]) -> bytes:
 def _text(name: str, value: object) -> str:
     if not isinstance(value, str):
         raise ValueError(f"{name}: a name is needed")
-    return value
+    # Without half a character, which has no bytes.
+    return value.encode(errors="replace").decode()
 
 
 def _writable(data: bytes, shape: tuple[int, ...]) -> NDArray[np.uint8]:

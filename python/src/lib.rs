@@ -100,8 +100,15 @@ impl View {
         let field_of_view = Angle::from_degrees(self.field_of_view);
         let camera = match self.eye {
             Some(eye) => {
-                let (eye, target) = (narrow(eye), narrow(self.target));
-                Camera { eye, target, up, field_of_view, near: Camera::near_for(eye.distance(target)) }
+                // A point that is far away may be nearer on the same line, where squares are within range.
+                let way: [f64; 3] = std::array::from_fn(|i| self.target[i] - eye[i]);
+                let longest = way.iter().fold(0.0_f64, |longest, number| longest.max(number.abs()));
+                let target = std::array::from_fn(|i| eye[i] + way[i] * (1e6 / longest).min(1.0));
+                let (eye, target) = (narrow(eye), narrow(target));
+                // The model is around the origin, and may be nearer than the target.
+                let distance = eye.distance(target);
+                let distance = if eye == Vec3::ZERO { distance } else { distance.min(eye.length()) };
+                Camera { eye, target, up, field_of_view, near: Camera::near_for(distance) }
             }
             None => {
                 let from = Viewpoint { direction: towards, up, field_of_view, target: None };

@@ -98,6 +98,26 @@ class Frames(unittest.TestCase):
         seen = mode13h.render(vertices, faces, eye=(1, 2, 3))[0]
         np.testing.assert_array_equal(mode13h.render(vertices + far, faces, eye=far + (1, 2, 3))[0], seen)
 
+    def test_vertices_of_no_face_change_nothing(self):
+        expected = mode13h.render(CUBE, CUBE_FACES, normals=CUBE)
+        for far in (2, 1e5, 1e30):
+            with_more = np.vstack([[far, 0, 0], CUBE[:4], [0, -far, far], CUBE[4:]])
+            numbers = np.array([1, 2, 3, 4, 6, 7, 8, 9])[CUBE_FACES]
+            drawn = mode13h.render(with_more, numbers, normals=with_more)
+            self.assertTrue(all(np.array_equal(a, b) for a, b in zip(expected, drawn)), far)
+
+    def test_only_the_direction_to_a_target_matters(self):
+        expected, _ = mode13h.render(CUBE, CUBE_FACES, eye=(0.5, 0.25, 4), target=(0.5, 0.25, 0))
+        for z in (1, -100, -1e3, -1e6, -1e20, -1e300):
+            drawn, _ = mode13h.render(CUBE, CUBE_FACES, eye=(0.5, 0.25, 4), target=(0.5, 0.25, z))
+            self.assertTrue(np.array_equal(expected, drawn), z)
+
+    def test_normals_have_any_length(self):
+        expected, _ = mode13h.render(CUBE, CUBE_FACES, normals=CUBE)
+        for length in (1e-300, 1e-46, 2.0, 1e39, 1e300):
+            drawn, _ = mode13h.render(CUBE, CUBE_FACES, normals=CUBE * length)
+            self.assertLess(np.abs(drawn.astype(int) - expected).max(), 2, length)
+
     def test_up_turns_the_model_and_the_default_direction_with_it(self):
         y = mode13h.render(CUBE * (1, 2, 3), CUBE_FACES, shading="flat")[0]
         # (x, y, z) with y up is (x, −z, y) with z up.
@@ -183,6 +203,7 @@ class Errors(unittest.TestCase):
         self.refused("shading: a name is needed", CUBE, CUBE_FACES, shading=1)
         names = ", ".join(typing.get_args(mode13h.Palette))
         self.refused(f'palette "none": unknown palette; there are {names}', CUBE, CUBE_FACES, palette="none")
+        self.refused('palette "?": unknown palette; there are ' + names, CUBE, CUBE_FACES, palette="\ud800")
         self.refused("palette: values must be 0 to 255", CUBE, CUBE_FACES, palette=np.full((256, 3), 256))
         self.refused("palette: an array of shape (255, 3), but (256, 3) is needed", CUBE, CUBE_FACES, palette=np.zeros((255, 3), int))
         self.refused("palette: float64 values, but integers are needed", CUBE, CUBE_FACES, palette=np.zeros((256, 3)))

@@ -17,7 +17,7 @@ named! {
         /// A depth for every pixel.
         DepthBuffer = "depth-buffer",
         /// All faces of the frame at once, row by row, each pixel written once. Draws the same bytes as the depth
-        /// buffer.
+        /// buffer, except where `gouraud-vintage` covers pixels outside of a face.
         ScanLine = "scan-line",
     }
 }

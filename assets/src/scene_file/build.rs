@@ -61,7 +61,7 @@ impl<'a> Builder<'a> {
         if let Some(animation) = &layout.animation {
             self.scene.palette_animation = Some(self.animation(animation)?);
         }
-        self.background_and_fog(layout.background, layout.fog.as_ref())?;
+        background_and_fog(&mut self.scene, layout)?;
         self.objects(layout)?;
         for light in &layout.lights {
             self.light(light)?;
@@ -71,8 +71,9 @@ impl<'a> Builder<'a> {
         let without_look = look.map(|_| {
             let mut scene = self.scene.clone();
             (scene.settings, scene.palette, scene.auto_palette) = (settings, palette, auto);
-            scene
+            background_and_fog(&mut scene, layout).map(|()| scene)
         });
+        let without_look = without_look.transpose()?;
         Ok(Loaded {
             scene: self.scene,
             look,
@@ -107,37 +108,6 @@ impl<'a> Builder<'a> {
             }
             _ => Err(Fault::value(layout.span(), "an animation is either a `fade` or a `cycle`")),
         }
-    }
-
-    /// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour, so each
-    /// defaults to the other.
-    fn background_and_fog(
-        &mut self,
-        background: Option<Background>,
-        fog: Option<&Spanned<FogLayout>>,
-    ) -> Result<(), Fault> {
-        let palette = self.scene.palette.clone().unwrap_or_default();
-        let fog_color = fog.and_then(|fog| fog.get_ref().color);
-        match (background, fog_color) {
-            (Some(Background::Entry(entry)), _) => self.scene.background = entry,
-            (Some(Background::Color(color)), _) | (None, Some(color)) => {
-                self.scene.set_background(color.rgb());
-            }
-            (None, None) => {}
-        }
-        let Some(fog) = fog else { return Ok(()) };
-        let FogLayout { start, end, .. } = fog.get_ref();
-        let color = match (fog_color, self.scene.background_color) {
-            (Some(color), _) => color.rgb(),
-            (None, Some(color)) => color,
-            (None, None) => palette[self.scene.background],
-        };
-        let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
-        if fog.end <= fog.start {
-            return Err(Fault::value(end.span(), "the fog must end farther away than it starts"));
-        }
-        self.scene.fog = Some(fog);
-        Ok(())
     }
 
     fn objects(&mut self, layout: &SceneLayout) -> Result<(), Fault> {
@@ -237,6 +207,34 @@ impl<'a> Builder<'a> {
         }
         Ok(())
     }
+}
+
+/// Sets the background and the fog. Fog hides distant surfaces only if it ends in the background's colour, so each
+/// defaults to the other.
+fn background_and_fog(scene: &mut Scene, layout: &SceneLayout) -> Result<(), Fault> {
+    let fog = layout.fog.as_ref();
+    let palette = scene.palette.clone().unwrap_or_default();
+    let fog_color = fog.and_then(|fog| fog.get_ref().color);
+    match (layout.background, fog_color) {
+        (Some(Background::Entry(entry)), _) => scene.background = entry,
+        (Some(Background::Color(color)), _) | (None, Some(color)) => {
+            scene.set_background(color.rgb());
+        }
+        (None, None) => {}
+    }
+    let Some(fog) = fog else { return Ok(()) };
+    let FogLayout { start, end, .. } = fog.get_ref();
+    let color = match (fog_color, scene.background_color) {
+        (Some(color), _) => color.rgb(),
+        (None, Some(color)) => color,
+        (None, None) => palette[scene.background],
+    };
+    let fog = Fog { color, start: start.map_or(0.0, |start| start.0), end: end.get_ref().0 };
+    if fog.end <= fog.start {
+        return Err(Fault::value(end.span(), "the fog must end farther away than it starts"));
+    }
+    scene.fog = Some(fog);
+    Ok(())
 }
 
 /// The cone of a spot light: a direction with an outer angle.

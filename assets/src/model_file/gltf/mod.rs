@@ -191,10 +191,15 @@ impl Reading<'_> {
         let pairs = pairs.transpose().map_err(fault)?;
         let is_textured = self.materials.surfaces[surface].texture.is_some();
         let colors = attribute(&Semantic::Colors(0)).map(|a| self.buffers.rows_at::<3>(&a, &used));
-        let mut colors = colors.transpose().map_err(fault)?;
-        if is_textured && colors.take().is_some_and(|colors| colors.as_flattened().iter().any(|c| *c < 1.0)) {
-            self.left_out.insert("colours of vertices with a texture");
-        }
+        let colors = match colors {
+            Some(colors) if is_textured => {
+                // Nobody needs them, so they may be faulty.
+                let are_seen = colors.is_ok_and(|colors| colors.as_flattened().iter().any(|c| *c < 1.0));
+                self.left_out.extend(are_seen.then_some("colours of vertices with a texture"));
+                None
+            }
+            colors => colors.transpose().map_err(fault)?,
+        };
         // By the specification a skinned mesh is not where its node is, but where its joints are.
         let skinned = match binding.joints {
             Some(joints) => skin::influences(primitive, count, &used, joints, self.buffers).map_err(fault)?,
