@@ -76,7 +76,8 @@ def render(
         normals: (n, 3) normals of the vertices, of any length but 0; otherwise those of the faces
             around each vertex, averaged by angle.
         direction: (3,) from the model towards the eye; otherwise from the front, a little from the
-            right and above. The eye is where the model fills nine tenths of the picture.
+            right and above. The eye is where the model fills nine tenths of the picture, or less in
+            a field of view so wide that the eye would be too near.
         up: (3,) up in the picture; (0, 0, 1) for a model whose z points up. Along `direction` it
             has no effect.
         eye: (3,) the eye's position, if you place it yourself instead of giving a `direction`.

@@ -33,8 +33,8 @@ use crate::view::{ObjectView, View};
 struct Parameters {
     view: ObjectView,
     ambient: f32,
-    /// The version of the palette's ramps, on which the materials' ramps depend.
-    ramps: usize,
+    /// The number of the palette's ramps, on which the materials' ramps depend.
+    ramps: Option<usize>,
     fog: Option<Fog>,
     accuracy: Accuracy,
     tolerance: f32,
@@ -189,7 +189,7 @@ impl ObjectState {
         let parameters = Parameters {
             view: *view,
             ambient: scene.ambient,
-            ramps: scene.palette.as_ref().map_or(0, Palette::ramps),
+            ramps: scene.palette.as_ref().map(Palette::ramps),
             fog: scene.fog,
             accuracy: settings.drawn_accuracy(),
             tolerance: settings.tolerance(),

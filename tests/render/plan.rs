@@ -6,11 +6,12 @@ use mode13h::Angle;
 use mode13h::glam::Vec3;
 use mode13h::light::Light;
 use mode13h::mesh::{Mesh, Surface, shapes};
+use mode13h::palette::BIOS;
 use mode13h::plan::{Effect, Reason};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
 use mode13h::scene::{Object, Scene};
-use mode13h::settings::{Accuracy, HiddenSurfaces, Mapping, Shading, VertexPath};
+use mode13h::settings::{Accuracy, DitherPattern, HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
@@ -351,6 +352,25 @@ fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert_eq!(differing(vga.pixels(), &draw(&scene, |_| ()).0), 0, "{name}");
         tried.add(1);
+    }
+}
+
+/// A palette without ramps makes materials draw in their own colours; without a palette in the scene they do not.
+#[test]
+fn a_palette_without_ramps_is_another_than_none() {
+    let mesh = shapes::torus(24, 12);
+    let count = mesh.triangles().len();
+    let surface = Surface { diffuse: [1.0, 0.4, 0.1], ..Surface::default() };
+    let mut scene = Scene::showing(mesh.with_surfaces(vec![surface], vec![0; count]).expect("a surface"));
+    scene.add_light(Light::sun([1.0, 0.0, 0.0]).with_color([0.2, 0.2, 1.0]));
+    (scene.settings.channels, scene.settings.dither) = (Some(true), Some(DitherPattern::Ordered));
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    for palette in [Some(BIOS), None, Some(BIOS)] {
+        scene.palette = palette;
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+        let mut fresh = vga.clone();
+        Renderer::new().draw(&scene, &mut fresh).expect("a legal scene");
+        assert_eq!(differing(vga.pixels(), fresh.pixels()), 0, "{:?}", scene.palette.is_some());
     }
 }
 
