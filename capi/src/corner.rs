@@ -362,7 +362,8 @@ impl Source {
                 bytes(mesh.index_count, mesh.index_bits / 8).map_err(|_| Refusal::Short)?
             },
         };
-        Ok((Self { mesh }, parts))
+        // What nobody needs is not read, so it may be anything.
+        Ok((Self { mesh: Mesh { shade: if has_shade { shade } else { ABSENT }, ..mesh } }, parts))
     }
 
     /// The number of its triangles.
@@ -523,6 +524,12 @@ impl Source {
         } else {
             Values { shade, ..Values::default() }
         };
+        // As in a corner that is not cut, before it is interpolated.
+        let (least, most) = (D::Wide::default(), D::Wide::from(255) * D::one());
+        let clamped = |c: D::Wide| if c < least { least } else { c };
+        let clamped = |c: D::Wide| if c > most { most } else { clamped(c) };
+        let Values { shade, texture, fog, slope } = values;
+        let values = Values { shade: clamped(shade), texture, fog: clamped(fog), slope: slope.map(clamped) };
         let mut corner = Wide { x, y, w, depth, values, ready: None };
         corner.ready = corner.project::<D>(near);
         Some(corner)

@@ -136,9 +136,10 @@ impl Renderer {
 
     /// Forces an effect on or off for every object, or leaves it to the plan, as a new renderer does.
     ///
-    /// Effects that save work give the same bytes on or off, with two exceptions: back-face culling, forced on, also
-    /// hides the backs of open meshes (a room seen from inside has none to hide, and is drawn faster), and with the
-    /// transform forced off an object stays as it was last drawn. The method for hidden surfaces is set by
+    /// Effects that save work give the same bytes on or off, with these exceptions. Back-face culling, forced on, also
+    /// hides the backs of open meshes (a room seen from inside has none to hide, and is drawn faster); forced off, it
+    /// shows the backs of convex objects, which nothing else hides without a depth buffer. With the transform forced off
+    /// an object stays as it was last drawn. The method for hidden surfaces is set by
     /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
     /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
@@ -233,8 +234,9 @@ impl Renderer {
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
-        // Nothing was decided for a scene without objects.
-        if self.cache.plan.is_on_anywhere(Effect::PaletteAnimation) || scene.objects().is_empty() {
+        // Nothing was decided for a scene without visible objects.
+        let is_empty = !(0..scene.objects().len()).any(|object| scene.is_visible(object));
+        if is_empty || self.cache.plan.is_on_anywhere(Effect::PaletteAnimation) {
             scene.load_palette(vga);
         } else if let Some(palette) = &scene.palette {
             vga.set_palette(palette);

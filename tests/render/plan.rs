@@ -10,7 +10,7 @@ use mode13h::palette::BIOS;
 use mode13h::plan::{Effect, Reason};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
-use mode13h::scene::{Object, Scene};
+use mode13h::scene::{Object, PaletteAnimation, Scene};
 use mode13h::settings::{Accuracy, DitherPattern, HiddenSurfaces, Mapping, Shading, VertexPath};
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
@@ -372,6 +372,25 @@ fn a_palette_without_ramps_is_another_than_none() {
         Renderer::new().draw(&scene, &mut fresh).expect("a legal scene");
         assert_eq!(differing(vga.pixels(), fresh.pixels()), 0, "{:?}", scene.palette.is_some());
     }
+}
+
+/// A palette is animated whatever is visible.
+#[test]
+fn a_palette_is_animated_without_a_visible_object() {
+    let mut scene = Scene::showing(shapes::cube());
+    scene.palette = Some(BIOS);
+    let palette = |scene: &Scene| {
+        let mut vga = Vga::new();
+        Renderer::new().draw(scene, &mut vga).expect("a legal scene");
+        vga.palette()
+    };
+    let still = palette(&scene);
+    scene.palette_animation = Some(PaletteAnimation::Cycle { range: 1..=99, period: 4.0 });
+    scene.set_time(1.0);
+    let moved = palette(&scene);
+    assert_ne!(moved, still);
+    scene.objects_mut()[0].visible = false;
+    assert_eq!(palette(&scene), moved);
 }
 
 #[test]

@@ -389,3 +389,41 @@ fn the_order_of_the_corners_makes_no_difference() {
         }
     }
 }
+
+/// Flat triangles read no shades, so these may be anything.
+#[test]
+fn flat_triangles_need_no_shades() {
+    let mut pixels = vec![0_u8; 64 * 40];
+    let canvas = target(&mut pixels, 64, 40, 64);
+    let corner = |x, y| mode13h_capi::abi::Vertex { x, y, depth: 1.0, shade: f32::NAN };
+    let corners = [corner(0.0, 0.0), corner(60.0, 0.0), corner(0.0, 30.0)];
+    // SAFETY: three corners.
+    unsafe {
+        assert_eq!(m13_triangle(&canvas, corners.as_ptr(), 0, 77), OK);
+        assert_ne!(m13_triangle(&canvas, corners.as_ptr(), 1, 77), OK);
+    }
+    assert_eq!(pixels[64 * 10 + 10], 77);
+}
+
+/// A shade beyond its range counts as the end of the range, whether or not its corner is cut off.
+#[test]
+fn shades_are_clamped_before_triangles_are_cut() {
+    let drawn = |shade: f32, is_fixed: bool| {
+        let mut pixels = vec![0_u8; 320 * 200];
+        let canvas = target(&mut pixels, 320, 200, 320);
+        let corners = [[10.0_f32, 10.0, 1.0, 20.0], [300.0, 20.0, 1.0, 100.0], [-50.0, 90.0, -0.5, shade]];
+        let corners_x = corners.map(|corner| corner.map(|c| (c * 65_536.0) as i32));
+        let of = material(1);
+        let mut made = if is_fixed { mesh(&corners_x) } else { mesh(&corners) };
+        (made.homogeneous, made.near_w, made.near_w_x, made.shade) = (1, 0.5, 0x8000, 12);
+        let draw = if is_fixed { m13_draw_x } else { m13_draw };
+        // SAFETY: the structs are valid, and so is the memory they name.
+        assert_eq!(unsafe { draw(&canvas, &made, &of, core::ptr::null_mut(), core::ptr::null_mut()) }, OK);
+        assert!(pixels.iter().filter(|pixel| **pixel > 0).count() > 1_000);
+        pixels
+    };
+    for is_fixed in [false, true] {
+        assert!(drawn(255.0, is_fixed) == drawn(1_000.0, is_fixed));
+        assert!(drawn(0.0, is_fixed) == drawn(-1_000.0, is_fixed));
+    }
+}
