@@ -24,9 +24,9 @@ use crate::scene::{Camera, Object, matrix_product};
 /// The screen: size in pixels, and the shape of a pixel.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Screen {
-    /// The number of columns.
+    /// The number of columns, at most 4,096 to be drawn.
     pub width: u32,
-    /// The number of rows.
+    /// The number of rows, at most 4,096 to be drawn.
     pub height: u32,
     /// The aspect ratio of a pixel, width to height.
     pub pixel_aspect: (u32, u32),

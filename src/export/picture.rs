@@ -77,7 +77,8 @@ impl<'a> Picture<'a> {
     /// Row `y`, `width` bytes; empty beyond the picture.
     #[must_use]
     pub fn row(&self, y: usize) -> &'a [u8] {
-        let row = y.checked_mul(self.pitch).and_then(|first| self.pixels.get(first..));
+        let first = y.checked_mul(self.pitch).filter(|_| y < self.height);
+        let row = first.and_then(|first| self.pixels.get(first..));
         row.and_then(|row| row.get(..self.width)).unwrap_or_default()
     }
 }

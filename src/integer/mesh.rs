@@ -205,7 +205,7 @@ pub fn face_normal(a: Vector, b: Vector, c: Vector) -> Option<Vector> {
 /// uses gets +z. Faces beyond the 32,767th around one vertex may be ignored.
 ///
 /// # Errors
-/// Fewer normals than positions; an index out of range.
+/// Another number of normals than of positions; an index out of range.
 pub fn average_normals<I: VertexIndex>(
     positions: &[Vector],
     triangles: &[[I; 3]],

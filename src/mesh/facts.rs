@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 
 use super::Mesh;
 use super::normals::face_normal;
-use super::wide::dot;
+use super::wide::{dot, sub, widen};
 
 /// The derived properties of a mesh.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -61,19 +61,22 @@ fn vertex_surfaces(mesh: &Mesh) -> Vec<u16> {
 
 /// The longest edge in space and in texture coordinates. Rounded; infinite beyond f32.
 fn longest_edges(mesh: &Mesh) -> (f32, f32) {
-    let (mut edge, mut texture_edge) = (0.0_f32, 0.0_f32);
+    let (mut edge, mut texture_edge) = (0.0_f64, 0.0_f64);
     for &[a, b, c] in &mesh.triangles {
         for (from, to) in [(a, b), (b, c), (c, a)] {
             // In range, as in every mesh.
             let (from, to) = (from as usize, to as usize);
-            edge = edge.max(mesh.positions[from].distance_squared(mesh.positions[to]));
+            let along = sub(widen(mesh.positions[from]), widen(mesh.positions[to]));
+            edge = edge.max(dot(along, along));
             if let Some(texcoords) = &mesh.texcoords {
-                texture_edge = texture_edge.max(texcoords[from].distance_squared(texcoords[to]));
+                let [from, to] = [from, to].map(|i| texcoords[i].to_array().map(f64::from));
+                let along = [from[0] - to[0], from[1] - to[1], 0.0];
+                texture_edge = texture_edge.max(dot(along, along));
             }
         }
     }
     // The root is monotonic, so only the greatest squares need one.
-    (libm::sqrtf(edge), libm::sqrtf(texture_edge))
+    (libm::sqrt(edge) as f32, libm::sqrt(texture_edge) as f32)
 }
 
 /// For each surface, the largest change of texture coordinates over one unit of its faces. Faces

@@ -2,8 +2,8 @@
 //!
 //! A row holds 256 bytes; `high` selects the row, `low` the column, and the byte is at `high << 8 | low`. Every colour
 //! in a table made from a palette is the nearest entry to an exact mixture rounded once, by the colours that the card
-//! shows ([`Palette::on_dac`]), so it is nearest on the screen; the first of equally near entries is used. If a mixture
-//! equals one of its two parts, the table gives that part's own byte, even if other entries look the same.
+//! shows ([`Palette::on_dac`]), so it is nearest on the screen; the first of equally near entries is used, except where a
+//! function says that a byte stays as it is.
 
 use alloc::boxed::Box;
 use core::fmt;

@@ -391,7 +391,8 @@ impl Rules<'_> {
         match self.inputs.settings.mapping {
             Some(Mapping::Affine) => Decision::off(Reason::Asked).choosing(Choice::Mapping(Mapping::Affine)),
             Some(mapping) => Decision::on(Reason::Asked).choosing(Choice::Mapping(mapping)),
-            None if texels > AFFINE_TOLERANCE => {
+            // Not a number if the edge is infinite.
+            None if texels > AFFINE_TOLERANCE || texels.is_nan() => {
                 Decision::on(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Perspective))
             }
             None => Decision::off(Reason::AffineError { texels }).choosing(Choice::Mapping(Mapping::Affine)),

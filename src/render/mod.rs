@@ -184,8 +184,8 @@ impl Renderer {
 
     /// Bounds the error of an object's linear shades against light at every pixel, in the last frame drawn, from
     /// normals, lights and vertices. It is in shades of 1/255 of full intensity, without rounding. `object` is the
-    /// object's index. `None` if the object is flat-shaded, does not exist, has changed since then, or is on the 16.16
-    /// path.
+    /// object's index. `None` if the object is flat-shaded, lit at every pixel, out of sight, on the 16.16 path, or does
+    /// not exist; if a material's response is its own; and if the mesh is another, or a plan was made for a change.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
@@ -226,17 +226,20 @@ impl Renderer {
     /// Draws `scene` on the machine: sets its DAC to the scene's palette, if it has one, clears its pixels and draws.
     ///
     /// If nothing has changed since this renderer's last frame, and nobody has modified the machine's memory, that
-    /// frame is left as it is.
+    /// frame is left as it is, except on the integer path.
     ///
     /// # Errors
-    /// A number in the scene is not finite or is out of range, or, on the integer path, does not fit in 16.16 together
-    /// with the others. The machine is then left unchanged.
+    /// The scene has a fault ([`RenderError`]): a number that is not finite or out of range, too few materials, parents in
+    /// a cycle, a camera without a direction; on the integer path also any parent, and numbers that do not fit in 16.16
+    /// together. The machine is then left unchanged.
     pub fn draw(&mut self, scene: &Scene, vga: &mut Vga) -> Result<Stats, RenderError> {
         let shown = if scene.palette.is_none() { Some(vga.palette()) } else { None };
         let (mut stats, changed) = self.prepare(scene, Screen::MODE_13H, shown.as_ref(), true)?;
         // Nothing was decided for a scene without visible objects.
         let is_empty = !(0..scene.objects().len()).any(|object| scene.is_visible(object));
-        if is_empty || self.cache.plan.is_on_anywhere(Effect::PaletteAnimation) {
+        let effect = Effect::PaletteAnimation;
+        let is_off = effect.is_left_out() || self.overrides.get(None, effect) == Some(false);
+        if is_empty && !is_off || self.cache.plan.is_on_anywhere(effect) {
             scene.load_palette(vga);
         } else if let Some(palette) = &scene.palette {
             vga.set_palette(palette);
@@ -393,6 +396,9 @@ impl Renderer {
     fn checked(&self, scene: &Scene, screen: Screen) -> Result<View, RenderError> {
         check(scene)?;
         screen.check().map_err(RenderError::Screen)?;
+        if screen.width.max(screen.height) > Frame::MAX_SIDE {
+            return Err(RenderError::Screen("its width and height must be at most 4,096"));
+        }
         self.settings.or(&scene.settings).check().map_err(RenderError::Settings)?;
         View::new(&scene.camera, screen).map_err(RenderError::Camera)
     }

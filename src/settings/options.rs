@@ -113,7 +113,8 @@ impl fmt::Display for Accuracy {
 pub struct Settings {
     /// The accuracy of shades: a shading, or an error budget.
     pub accuracy: Option<Accuracy>,
-    /// The hidden-surface method, used even if it draws the scene wrongly.
+    /// The hidden-surface method, used even if it draws the scene wrongly. Scan-line, which shows one face at each pixel,
+    /// is replaced by the depth buffer if an object is transparent.
     pub hidden_surfaces: Option<HiddenSurfaces>,
     /// The mapping of textures.
     pub mapping: Option<Mapping>,

@@ -48,7 +48,7 @@ pub struct Input {
     /// desktop.
     pub typed: String,
     /// The position of the mouse, in pixels of the picture, from the top left corner: 0 to 320 across and 0 to 200 down
-    /// on a mode 13h picture; `None` outside the window.
+    /// on a mode 13h picture, and beyond these on bars beside it; `None` outside the window.
     pub mouse: Option<(f32, f32)>,
     /// The mouse buttons that are down.
     pub buttons: Buttons,
@@ -87,7 +87,7 @@ impl Input {
 
     /// Returns whether the user did anything since `before`, or holds a key or button.
     pub(super) fn differs(&self, before: &Input) -> bool {
-        !(self.pressed.is_empty() && self.held.is_empty() && self.typed.is_empty())
+        !(self.pressed.is_empty() && self.held.is_empty() && self.released.is_empty() && self.typed.is_empty())
             || (self.mouse, self.buttons) != (before.mouse, before.buttons)
             || (self.drag, self.wheel) != ((0.0, 0.0), 0.0)
     }
@@ -227,6 +227,7 @@ mod tests {
         for something in [
             Input { pressed: vec![Key::H], ..nothing.clone() },
             Input { held: vec![Key::Left], ..nothing.clone() },
+            Input { released: vec![Key::Left], ..nothing.clone() },
             Input { typed: "+".to_string(), ..nothing.clone() },
             Input { mouse: None, ..nothing.clone() },
             Input { buttons: Buttons { left: true, ..Buttons::default() }, ..nothing.clone() },

@@ -276,7 +276,7 @@ impl Window {
     ///
     /// [`WindowError`] if the display went away.
     pub fn rest(&mut self, longest: Duration) -> Result<Flow, WindowError> {
-        let (size, end) = (self.size(), self.begun + longest);
+        let (size, end) = (self.size(), self.begun.checked_add(longest));
         loop {
             self.wait(LOOK.min(longest));
             let flow = if self.now.duration_since(self.sent) >= RESEND {
@@ -285,7 +285,11 @@ impl Window {
                 self.window.update();
                 self.collect()
             };
-            if flow == Flow::Close || self.has_input || self.size() != size || self.begun + LOOK > end {
+            if flow == Flow::Close
+                || self.has_input
+                || self.size() != size
+                || end.is_some_and(|end| self.begun + LOOK > end)
+            {
                 return Ok(flow);
             }
         }

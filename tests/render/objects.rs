@@ -267,7 +267,8 @@ fn rows_of_a_frame_without_a_budget_count_no_faces() {
     assert_eq!(counts(&renderer, &scene), 0);
 }
 
-/// A screen or a pixel without a size is refused on both paths, and nothing is projected on it.
+/// A screen or a pixel without a size is refused on both paths, and nothing is projected on it. So is a screen larger than
+/// any frame.
 #[test]
 fn screens_and_pixels_need_a_size() {
     let (mut scene, _) = three();
@@ -283,9 +284,9 @@ fn screens_and_pixels_need_a_size() {
             assert_eq!(scene.camera.project(Vec3::ZERO, screen), None);
             assert_eq!(scene.camera.ray([1.0, 1.0], screen), None);
         }
-        for (width, height) in [(0, 200), (320, 0)] {
+        for (width, height) in [(0, 200), (320, 0), (4_097, 200), (320, u32::MAX)] {
             let screen = Screen { width, height, ..Screen::MODE_13H };
-            let error = Renderer::new().make_plan(&scene, screen).expect_err("no pixels");
+            let error = Renderer::new().make_plan(&scene, screen).expect_err("no pixels, or too many");
             assert!(matches!(error, RenderError::Screen(_)), "{error}");
         }
     }

@@ -10,8 +10,9 @@ use mode13h::palette::BIOS;
 use mode13h::plan::{Effect, Reason};
 use mode13h::raster::Frame;
 use mode13h::render::{RenderError, Renderer, Screen, Stats};
-use mode13h::scene::{Object, PaletteAnimation, Scene};
+use mode13h::scene::{Object, PaletteAnimation, Scene, Shared};
 use mode13h::settings::{Accuracy, DitherPattern, HiddenSurfaces, Mapping, Shading, VertexPath};
+use mode13h::texture::Texture;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
@@ -391,6 +392,23 @@ fn a_palette_is_animated_without_a_visible_object() {
     assert_ne!(moved, still);
     scene.objects_mut()[0].visible = false;
     assert_eq!(palette(&scene), moved);
+    let (mut renderer, mut vga) = (Renderer::new(), Vga::new());
+    renderer.force(Effect::PaletteAnimation, Some(false));
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    assert_eq!(vga.palette(), still);
+}
+
+/// Whatever the unit of a mesh, its bound on the error of affine mapping is a number.
+#[test]
+fn the_mapping_does_not_depend_on_the_unit_of_the_mesh() {
+    for size in [1.0, 1e-24, 2e19] {
+        let mesh = shapes::wall(1, 1).stretched(Vec3::splat(size)).expect("a factor");
+        let mut scene = Scene::showing(Object::new(mesh).scaled(size.recip()));
+        scene.objects_mut()[0].materials[0].texture = "crate".parse::<Texture>().ok().map(Shared::new);
+        let mut renderer = Renderer::new();
+        let plan = renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
+        assert!(plan.objects()[0].is_on(Effect::Perspective), "{size}");
+    }
 }
 
 #[test]

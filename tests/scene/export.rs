@@ -46,6 +46,10 @@ fn a_frame_is_an_indexed_png_of_its_own_bytes_and_colors() {
     let palette = vga.palette();
     let picture = Picture::mode_13h(vga.pixels(), &palette);
     assert_eq!(Png { scale: Scale::One, rgb: false }.encode(&picture).expect("encoded"), file);
+
+    let whole = vec![0; 65_536];
+    let picture = Picture::mode_13h(&whole, &palette);
+    assert_eq!([199, 200, usize::MAX].map(|y| picture.row(y).len()), [320, 0, 0]);
 }
 
 #[test]

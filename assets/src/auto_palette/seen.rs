@@ -152,7 +152,7 @@ impl Picture {
         scene.fog = None;
         scene.background = 0;
         scene.background_color = None;
-        scene.settings = Settings { dither: None, ..scene.settings };
+        scene.settings = Settings { dither: None, channels: None, ..scene.settings };
         let materials = scene.objects_mut().iter_mut().flat_map(|object| &mut object.materials);
         for (number, material) in materials.enumerate() {
             (material.color, material.highlight) = ([1.0; 3], [1.0; 3]);

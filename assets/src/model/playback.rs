@@ -24,8 +24,8 @@ pub struct Playback {
     /// The scene's lights and its camera are the file's.
     moves_lights: bool,
     moves_camera: bool,
-    /// The time that was shown last, and the camera then.
-    shown: Option<(f64, Option<Camera>)>,
+    /// The time that was shown last, the mesh of the object, and the camera then.
+    shown: Option<(f64, Shared<Mesh>, Option<Camera>)>,
 }
 
 impl Playback {
@@ -50,14 +50,14 @@ impl Playback {
     /// Also moves the scene's lights and its camera, which must be those of the model's file.
     #[must_use]
     pub fn with_lights_and_camera(mut self, lights: bool, camera: bool) -> Self {
-        (self.moves_lights, self.moves_camera) = (lights, camera);
+        (self.moves_lights, self.moves_camera, self.shown) = (lights, camera, None);
         self
     }
 
     /// Stretches each pose, as the object's mesh was [stretched](Mesh::stretched) at rest.
     #[must_use]
     pub fn stretched(mut self, factors: Vec3) -> Self {
-        self.stretch = factors;
+        (self.stretch, self.shown) = (factors, None);
         self
     }
 
@@ -72,23 +72,25 @@ impl Playback {
         &self.rig.clips()[self.clip]
     }
 
-    /// Moves the model to where it is at a time, in seconds. If that time is already shown, the mesh does not change,
-    /// so that the renderer's caches stay valid.
+    /// Moves the model to where it is at a time, in seconds. If the scene already shows that time, the mesh does not
+    /// change, so that the renderer's caches stay valid.
     pub fn show(&mut self, scene: &mut Scene, seconds: f64) {
-        let camera = match self.shown {
-            Some((shown, camera)) if shown == seconds => camera,
+        let has = |mesh: &Mesh| scene.get(self.object).is_none_or(|object| core::ptr::eq(object.mesh(), mesh));
+        let camera = match &self.shown {
+            Some((shown, mesh, camera)) if *shown == seconds && has(mesh) => *camera,
             _ => {
                 let Pose { mesh, lights, camera } = self.pose(seconds);
+                let mesh = Shared::new(mesh);
                 if let Some(object) = scene.get_mut(self.object) {
-                    object.set_mesh(mesh);
+                    object.set_mesh(Shared::clone(&mesh));
                 }
                 if self.moves_lights {
                     scene.lights_mut().iter_mut().zip(&lights).for_each(|(light, place)| stand_as(light, place));
                 }
+                self.shown = Some((seconds, mesh, camera));
                 camera
             }
         };
-        self.shown = Some((seconds, camera));
         if let (true, Some(camera)) = (self.moves_camera, camera) {
             scene.camera = camera;
         }

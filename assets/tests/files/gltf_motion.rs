@@ -384,7 +384,10 @@ fn a_body_that_bends_is_drawn_as_a_new_one() {
     let rig = rig(&model).clone();
     let mut scene = Scene::showing(model.mesh.clone());
     let object = scene.object_ids()[0];
+    let few = shapes::cube();
+    assert!(rig.pose(&few, 0, 0.5).mesh == few, "a mesh that is not the rig's");
     let mut playback = Playback::new(rig, 0, &scene, object).expect("an object");
+    let at_rest = scene.clone();
     let (mut renderer, mut vga) = (Renderer::new(), Box::new(Vga::new()));
     let mut pictures = Vec::new();
     for seconds in [0.0, 0.25, 0.5, 0.25, 0.0] {
@@ -397,6 +400,10 @@ fn a_body_that_bends_is_drawn_as_a_new_one() {
         renderer.draw(&scene, &mut vga).expect("a scene");
         playback.show(&mut scene, seconds);
         assert!(!renderer.make_plan(&scene, Screen::MODE_13H).expect("a plan").objects()[0].is_on(Effect::Transform));
+        // Another scene does not show that time yet.
+        let mut other = at_rest.clone();
+        playback.show(&mut other, seconds);
+        assert!(other[object].mesh().positions() == scene[object].mesh().positions(), "{seconds}");
         let mut fresh = Box::new(Vga::new());
         Renderer::new().draw(&scene, &mut fresh).expect("a scene");
         assert!(vga.pixels() == fresh.pixels(), "{seconds}");

@@ -349,6 +349,9 @@ fn a_round_is_seen_and_not_its_beginning() {
     assert!(seen[12][0].area > 0.01 && seen[12][0].brightest > 0.9, "{:?}", seen[12]);
     let all: f32 = seen.iter().flatten().map(|seen| seen.area).sum();
     assert!((all - 1.0).abs() < 1e-5);
+    // Intensities are measured whatever the scene is drawn with.
+    scene.settings.channels = Some(true);
+    assert_eq!(auto_palette::seen(&scene).expect("a scene"), seen);
 }
 
 /// Surfaces seen for a part of each round of a motion are seen by the palette, too, however many rounds there are.

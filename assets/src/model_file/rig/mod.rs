@@ -242,8 +242,8 @@ impl Rig {
     }
 
     /// The model at a time of a clip, in seconds; a clip begins again when it ends. `mesh` is the one that was read
-    /// with the rig. With any other number of vertices, or if there is no such clip, nothing moves. A vertex whose
-    /// position is beyond f32 stays where it is at rest.
+    /// with the rig. One with any other number of vertices does not move, and if there is no such clip, nothing does. A
+    /// vertex whose position is beyond f32 stays where it is at rest.
     #[must_use]
     pub fn pose(&self, mesh: &Mesh, clip: usize, seconds: f64) -> Pose {
         let mut parts = vec![None; self.skeleton.nodes.len()];
@@ -277,6 +277,9 @@ impl Rig {
     }
 
     fn moved(&self, mesh: &Mesh, transforms: &[Placement]) -> Mesh {
+        if mesh.positions().len() != self.of_mesh.len() {
+            return mesh.clone();
+        }
         let at_rest = mesh.positions().iter().zip(mesh.normals());
         let vertices = at_rest.zip(&self.of_mesh).map(|((&position, &normal), &(source, own))| {
             let place = self.vertices.influences.blended(source as usize, transforms);
