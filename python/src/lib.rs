@@ -105,9 +105,8 @@ impl View {
                 let longest = way.iter().fold(0.0_f64, |longest, number| longest.max(number.abs()));
                 let target = std::array::from_fn(|i| eye[i] + way[i] * (1e6 / longest).min(1.0));
                 let (eye, target) = (narrow(eye), narrow(target));
-                // The model is around the origin, and may be nearer than the target.
-                let distance = eye.distance(target);
-                let distance = if eye == Vec3::ZERO { distance } else { distance.min(eye.length()) };
+                // The model, in the cube from −1 to 1, may be nearer than the target, or around the eye.
+                let distance = eye.distance(target).min(eye.length().max(1.0));
                 Camera { eye, target, up, field_of_view, near: Camera::near_for(distance) }
             }
             None => {

@@ -112,6 +112,17 @@ class Frames(unittest.TestCase):
             drawn, _ = mode13h.render(CUBE, CUBE_FACES, eye=(0.5, 0.25, 4), target=(0.5, 0.25, z))
             self.assertTrue(np.array_equal(expected, drawn), z)
 
+    def test_an_eye_in_the_middle_sees_what_is_in_front(self):
+        # Two walls, the one behind turned away from the light, and one behind the eye.
+        corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        walls = np.vstack([np.column_stack([corners, np.full(4, z)]) for z in (-0.9, -0.9001, 0.9001)])
+        faces = [[a + 4 * wall, b + 4 * wall, c + 4 * wall] for wall in range(3) for a, b, c in ((0, 1, 2), (0, 2, 3))]
+        normals = np.repeat([[0, 0, 1], [0, 0, -1], [0, 0, -1]], 4, axis=0)
+        for off in (0, 1e-9, 1e-6, 1e-3):
+            seen = {"eye": (off, 0, 0), "target": (off, 0, -1e3), "field_of_view": 60}
+            frame, _ = mode13h.render(walls, faces, normals=normals, **seen)
+            self.assertGreater(frame[50:150, 100:220].min(), 50, off)
+
     def test_normals_have_any_length(self):
         expected, _ = mode13h.render(CUBE, CUBE_FACES, normals=CUBE)
         for length in (1e-300, 1e-46, 2.0, 1e39, 1e300):
