@@ -112,6 +112,10 @@ typedef struct m13_target {
 /* A whole frame without a depth buffer. If your rows run upwards, count y from the bottom row. */
 int m13_target_init(m13_target *target, void *pixels, size_t bytes, uint32_t width, uint32_t height, size_t pitch);
 
+/* A frame of which memory holds only a band: `rows` rows from `first_row` on. m13_target_band moves it. */
+int m13_target_init_band(m13_target *target, void *pixels, size_t bytes, uint32_t width, uint32_t height, size_t pitch,
+                         uint32_t first_row, uint32_t rows);
+
 /* Gives a target a depth buffer of 16 or 32 bits, aligned to its values; 0 bits removes it. Sixteen bits hold the upper 16
  * of the 30 bits of a float's depth, rounded up. The buffer is not cleared. */
 int m13_target_depth(m13_target *target, void *depth, size_t bytes, uint32_t bits);
@@ -120,7 +124,8 @@ int m13_target_depth(m13_target *target, void *depth, size_t bytes, uint32_t bit
 int m13_target_clip(m13_target *target, int32_t x0, int32_t y0, int32_t x1, int32_t y1);
 
 /* Says that `pixels` (and the depth buffer) hold `rows` rows from `first_row` on and no others. Coordinates remain those of
- * the whole frame, so a frame can be drawn band by band with little memory, or by several threads; its bytes are the same. */
+ * the whole frame, so a frame can be drawn band by band with little memory (begin with m13_target_init_band), or by several
+ * threads; its bytes are the same. */
 int m13_target_band(m13_target *target, uint32_t first_row, uint32_t rows);
 
 /* Checks the whole target, as each drawing call does. */

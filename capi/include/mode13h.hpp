@@ -87,6 +87,14 @@ public:
         : Target(bytes, columns, lines, columns)
     {
     }
+    /// A band of a frame: `rows` rows from `first_row` on.
+    Target(std::span<std::uint8_t> bytes, std::uint32_t columns, std::uint32_t lines, std::size_t bytes_a_row,
+           std::uint32_t first_row, std::uint32_t rows)
+    {
+        check(m13_target_init_band(this, bytes.data(), bytes.size(), columns, lines, bytes_a_row, first_row, rows));
+    }
+    /// Says that the bytes now hold these rows.
+    void band(std::uint32_t first_row, std::uint32_t rows) { check(m13_target_band(this, first_row, rows)); }
     void with_depth(std::span<std::uint16_t> cells) { check(m13_target_depth(this, cells.data(), cells.size_bytes(), 16)); }
     void with_depth(std::span<std::uint32_t> cells) { check(m13_target_depth(this, cells.data(), cells.size_bytes(), 32)); }
     void clip(std::int32_t x0, std::int32_t y0, std::int32_t x1, std::int32_t y1)

@@ -158,12 +158,32 @@ pub unsafe extern "C" fn m13_target_init(
     height: u32,
     pitch: usize,
 ) -> c_int {
+    // SAFETY: by the caller.
+    unsafe { m13_target_init_band(target, pixels, bytes, width, height, pitch, 0, height) }
+}
+
+/// Makes a target of a band of a frame, without a depth buffer.
+///
+/// # Safety
+/// See the header.
+#[unsafe(no_mangle)]
+#[expect(clippy::too_many_arguments, reason = "those of a whole frame, and two rows")]
+pub unsafe extern "C" fn m13_target_init_band(
+    target: *mut Target,
+    pixels: *mut c_void,
+    bytes: usize,
+    width: u32,
+    height: u32,
+    pitch: usize,
+    first_row: u32,
+    rows: u32,
+) -> c_int {
     let made = Target {
         size: size_of::<Target>() as u32,
         width,
         height,
-        first_row: 0,
-        rows: height,
+        first_row,
+        rows,
         clip_x0: 0,
         clip_y0: 0,
         clip_x1: width,

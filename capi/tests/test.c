@@ -145,6 +145,31 @@ static void targets(void)
     release(depth, 7 * 7 * 4);
 }
 
+/* A frame drawn in bands, in the memory of one, has the bytes of the whole frame. */
+static void bands(void)
+{
+    static const m13_vertex corners[3] = { { 1, 0, 0, 200 }, { 7, 6, 0, 10 }, { 0, 7, 0, 90 } };
+    uint8_t whole[49], *band = guarded(14);
+    m13_target t;
+    uint32_t row;
+    IS(M13_OK, m13_target_init(&t, whole, 49, 7, 7, 7));
+    IS(M13_OK, m13_clear(&t, 3));
+    IS(M13_OK, m13_triangle(&t, corners, M13_GOURAUD, 0));
+    IS(M13_SHORT, m13_target_init_band(&t, band, 13, 7, 7, 7, 0, 2));
+    IS(M13_BAND, m13_target_init_band(&t, band, 14, 7, 7, 7, 6, 2));
+    IS(M13_BAND, m13_target_init_band(&t, band, 14, 7, 7, 7, 0, 0));
+    IS(M13_OK, m13_target_init_band(&t, band, 14, 7, 7, 7, 0, 2));
+    IS(M13_SHORT, m13_target_band(&t, 0, 3));
+    for (row = 0; row < 7; row += 2) {
+        uint32_t rows = row < 6 ? 2 : 1;
+        IS(M13_OK, m13_target_band(&t, row, rows));
+        IS(M13_OK, m13_clear(&t, 3));
+        IS(M13_OK, m13_triangle(&t, corners, M13_GOURAUD, 0));
+        CHECK(memcmp(band, whole + 7 * row, 7 * rows) == 0);
+    }
+    release(band, 14);
+}
+
 static void spans(void)
 {
     uint8_t *row = guarded(100), *texels = guarded(16);
@@ -448,6 +473,7 @@ int main(int count, char **words)
     }
     codes();
     targets();
+    bands();
     spans();
     triangles(context);
     colors();
