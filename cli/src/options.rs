@@ -253,17 +253,17 @@ impl Drawing {
     /// places the camera. An automatic palette leaves out what is seen only if it is turned, unless it `turns`.
     pub(crate) fn still(&self, input: Input, turns: bool) -> Result<Turntable, Failure> {
         let is_reframed = matches!(&input, Input::Model(model) if !model.is_shape) && self.camera.is_none();
-        let mut stage = self.stage_that(turns, input)?;
+        let mut stage = self.make_stage(input, turns)?;
         stage.frames_still = is_reframed;
         Ok(stage)
     }
 
     /// Makes the stage of INPUT, drawn with these options.
     pub(crate) fn stage(&self, input: Input) -> Result<Turntable, Failure> {
-        self.stage_that(true, input)
+        self.make_stage(input, true)
     }
 
-    fn stage_that(&self, turns: bool, input: Input) -> Result<Turntable, Failure> {
+    fn make_stage(&self, input: Input, turns: bool) -> Result<Turntable, Failure> {
         let asked = self.palette.as_deref().map(input::colors).transpose()?.map(|(_, colors)| colors);
         let mut look_of_scene = None;
         let (mut stage, usual) = match input {

@@ -162,6 +162,10 @@ impl Head<'_> {
         let reason = hidden.map(|row| format!(" ({})", row.reason)).unwrap_or_default();
         let Stats { shading, vertex_path, kernel, hidden_surfaces, .. } = stats;
         let mut paragraph = |line: &str| text.push_str(&wrapped(line, 0, WIDTH));
+        let shading = match stats.max_error {
+            Some(shades) => format!("within {shades} shades"),
+            None => shading.to_string(),
+        };
         paragraph(&format!(
             "all: {shading}, {vertex_path} vertices, kernel {kernel}, hidden surfaces by {hidden_surfaces}{reason}"
         ));

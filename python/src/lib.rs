@@ -121,13 +121,11 @@ impl View {
 
 impl Look {
     fn accuracy(&self) -> PyResult<Accuracy> {
-        match (self.max_error, self.shading.as_str()) {
-            (Some(shades), _) => Ok(Accuracy::WithinError(shades as f32)),
-            (None, "gouraud") => Ok(Shading::default().into()),
-            (None, name) => {
-                name.parse().map(Shading::into).map_err(|error| fault(format!("shading {name:?}: {error}")))
-            }
-        }
+        let shading = match self.shading.as_str() {
+            "gouraud" => Shading::default(),
+            name => name.parse().map_err(|error| fault(format!("shading {name:?}: {error}")))?,
+        };
+        Ok(self.max_error.map_or(shading.into(), |shades| Accuracy::WithinError(shades as f32)))
     }
 
     fn palette(&self) -> PyResult<Palette> {

@@ -7,6 +7,9 @@ use crate::shared::Shared;
 /// A material's own response to light: a function from the intensity that the lighting model gives, 0 to 1, to the one
 /// shown. It is called wherever light is computed: at each vertex, face or pixel, on one channel or on each of three.
 ///
+/// It must depend on nothing but that intensity: shades are kept from frame to frame while their inputs stay the same. To
+/// change it, give the material another one.
+///
 /// ```
 /// use mode13h::light::LightResponse;
 /// use mode13h::mesh::shapes;

@@ -64,6 +64,7 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             continue;
         }
         let view = &inputs.views[index];
+        let is_unbounded = max_error.is_some() && has_custom_response(object);
         let reach = view.reach(object.mesh().bounds());
         let rules = Rules {
             inputs,
@@ -77,8 +78,9 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
             change: inputs.change.get(index).copied().unwrap_or(Change::New),
             lamps_in_range: lamps(index).iter().filter(|lamp| lamp_reaches(lamp, object.mesh().bounds())).count(),
             is_integer,
-            max_error,
-            shading: if max_error.is_some() && has_custom_response(object) { Shading::Phong } else { shading },
+            max_error: max_error.filter(|_| !is_unbounded),
+            shading: if is_unbounded { Shading::Phong } else { shading },
+            why: if is_unbounded { Reason::OwnResponse } else { Reason::Asked },
             way: (way, reason),
         };
         farthest = farthest.max(rules.reach.farthest);
@@ -87,17 +89,26 @@ pub(crate) fn decide<'a>(inputs: &Inputs<'_>, lamps: impl Fn(usize) -> &'a [Lamp
         if let Some(object) = plan.objects.last_mut() {
             rules.all(object);
             if !object.stages.is_out_of_sight {
-                plan.seen = plan.seen.hull(rules.reach.seen);
+                // Vertices kept by force may be anywhere.
+                let is_elsewhere = rules.change == Change::Changed && object.stages.vertices == VertexStage::Keep;
+                plan.seen = plan.seen.hull(if is_elsewhere { Rect::EVERYWHERE } else { rules.reach.seen });
             }
         }
     }
     let Plan { order, objects, .. } = plan;
     order.retain(|index| !objects[*index].stages.is_out_of_sight);
-    let needed = (farthest * LEAST_DEPTH) as f32;
+    // Below infinity, where no near distance would do.
+    let needed = ((farthest * LEAST_DEPTH) as f32).min(f32::MAX);
     plan.near_needed = (inputs.scene.camera.near < needed).then_some(needed);
     if shading == Shading::GouraudVintage || is_integer {
         plan.seen = Rect::EVERYWHERE;
     }
+}
+
+/// The light's intensity, or that of its strongest channel.
+fn strength(light: &Light) -> f32 {
+    let color = light.color().into_iter().map(f32::abs).fold(1.0, f32::max);
+    light.intensity().abs() * color
 }
 
 /// Returns whether any of its materials has a custom response to light, whose error has no known
@@ -134,12 +145,14 @@ struct Rules<'a> {
     lamps_in_range: usize,
     /// Whether vertices are transformed in 16.16.
     is_integer: bool,
-    /// The error budget, if there is one.
+    /// The error budget, if there is one for the object.
     max_error: Option<f32>,
     /// The shading to draw with: the requested one, or on the 16.16 path one that it supports, or
     /// with a budget the default. An object without an error bound gets per-pixel lighting instead
     /// of a budget.
     shading: Shading,
+    /// The reason for a shading that lights pixels.
+    why: Reason,
     way: (HiddenSurfaces, Reason),
 }
 
@@ -212,7 +225,7 @@ impl Rules<'_> {
 
     /// Leaves the shading of faces to a budget, unless one shading is known to suffice for all of them.
     fn keep_within(&self, max_error: f32, plan: &mut ObjectPlan) {
-        if !plan.is_on(Effect::Lighting) || has_custom_response(self.object) {
+        if !plan.is_on(Effect::Lighting) {
             return;
         }
         if self.is_lit_by_face(plan) {
@@ -225,7 +238,11 @@ impl Rules<'_> {
     /// Returns whether per-pixel lighting would give each face a single shade, that of its own
     /// normal.
     fn is_lit_by_face(&self, before: &ObjectPlan) -> bool {
+        // Shades of normals 10⁻⁵ apart then differ by at most a hundredth.
+        let strength = self.scene.lights().iter().map(strength).sum::<f32>();
+        let reflects = |material: &Material| (material.diffuse * strength).abs() <= 4.0;
         self.object.mesh().facts.is_faceted
+            && self.object.materials.iter().all(reflects)
             && !before.is_on(Effect::PositionalLights)
             && !before.is_on(Effect::Specular)
     }
@@ -346,9 +363,7 @@ impl Rules<'_> {
             (Some(_), _) if self.is_lit_by_face(before) => Decision::off(Reason::Faceted),
             (Some(max_error), _) => Decision::on(Reason::Budget { max_error }).choosing(Choice::Budget),
             (None, Shading::Flat) => Decision::off(Reason::FlatAsked),
-            (None, shading) if shading.lights_pixels() => {
-                Decision::off(Reason::Asked).choosing(Choice::Shading(shading))
-            }
+            (None, shading) if shading.lights_pixels() => Decision::off(self.why).choosing(Choice::Shading(shading)),
             (None, shading) => Decision::on(Reason::ShadesDiffer).choosing(Choice::Shading(shading)),
         }
     }
@@ -365,7 +380,7 @@ impl Rules<'_> {
 
     fn phong(&self, before: &ObjectPlan) -> Decision {
         match self.max_error {
-            None if self.shading.lights_pixels() => Decision::on(Reason::Asked).choosing(Choice::Shading(self.shading)),
+            None if self.shading.lights_pixels() => Decision::on(self.why).choosing(Choice::Shading(self.shading)),
             None => Decision::off(Reason::NotAsked),
             _ if !before.is_on(Effect::Lighting) => Decision::off(before[Effect::Lighting].reason),
             _ if self.is_lit_by_face(before) => Decision::off(Reason::Faceted),

@@ -25,7 +25,8 @@ impl Findings {
         match (effect, &self.face_counts, self.linear_error) {
             (Effect::Gouraud, Some(counts), _) => format!(": {counts}"),
             (Effect::Phong | Effect::Tessellation, _, Some(shades)) if !on => {
-                format!("; linear shades are off by at most {shades:.2}")
+                // Rounded up, because it is a bound.
+                format!("; linear shades are off by at most {:.2}", libm::ceil(shades * 100.0) / 100.0)
             }
             _ => String::new(),
         }

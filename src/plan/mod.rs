@@ -89,9 +89,9 @@ impl Index<Effect> for ObjectPlan {
 }
 
 impl ObjectPlan {
-    /// A plan without any decisions, as for an object that is not drawn.
+    /// The plan of a hidden object, for which nothing else is decided.
     fn new(shading: Shading) -> Self {
-        let decisions = [Decision::off(Reason::SceneHasNone); Effect::COUNT];
+        let decisions = [Decision::off(Reason::Hidden); Effect::COUNT];
         Self { decisions, shading, max_error: None, stages: Stages::default() }
     }
 

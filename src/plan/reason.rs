@@ -19,6 +19,8 @@ pub enum Reason {
     Unchanged,
     /// Vertices are not cached between frames.
     NotKept,
+    /// The object or one that it belongs to is hidden.
+    Hidden,
     /// Its bounds are off the screen, or nearer than the near plane.
     OutOfSight,
     /// This build does not contain the effect.
@@ -65,6 +67,8 @@ pub enum Reason {
     AllTransparent,
     /// It was requested, by the scene or by hand.
     Asked,
+    /// A material's response to light is its own, and the error of shades between the vertices is not known.
+    OwnResponse,
     /// It was not requested.
     NotAsked,
     /// The scan-line method was requested, which handles one face per pixel, but some surface is transparent.
@@ -193,6 +197,7 @@ impl Reason {
             Self::Nearest { nearest, near } => {
                 format!("its bounds come as near as {nearest:.3}; the near plane is at {near:.3}")
             }
+            Self::Hidden => "it is hidden".to_string(),
             Self::CrossesNear => "its bounds reach the near plane".to_string(),
             Self::LeavesScreen => "its bounds reach the screen's edge".to_string(),
             Self::OnScreen => "its bounds lie on the screen".to_string(),
@@ -209,6 +214,7 @@ impl Reason {
             Self::TransparentLast => "transparent objects are drawn last, far to near".to_string(),
             Self::AllTransparent => "every object is transparent, so all are drawn far to near".to_string(),
             Self::Asked => "asked for".to_string(),
+            Self::OwnResponse => "a material has a response of its own, whose error is not known".to_string(),
             Self::NotAsked => "not asked for".to_string(),
             Self::ScanLineShowsOneFace => "scan-line was asked for, but something is transparent".to_string(),
             Self::Lights { count: 1 } => "one light".to_string(),
@@ -238,10 +244,12 @@ impl Reason {
             Self::NearerThan { farthest, start } => {
                 format!("it begins at {start:.3}, the object ends at {farthest:.3}")
             }
-            Self::AffineError { texels } => format!("linear mapping would be off by up to {texels:.2} texels"),
+            // Bounds are rounded up.
+            Self::AffineError { texels } => {
+                format!("linear mapping would be off by up to {:.2} texels", libm::ceil(texels * 100.0) / 100.0)
+            }
             Self::NoTexture => "nothing needs perspective".to_string(),
             Self::NoImage => "no material has a texture".to_string(),
-            // Rounded up, because it is a bound.
             Self::TexelsToPixel { texels } => {
                 format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)
             }

@@ -139,7 +139,8 @@ impl Renderer {
     /// Effects that save work give the same bytes on or off, with these exceptions. Back-face culling, forced on, also
     /// hides the backs of open meshes (a room seen from inside has none to hide, and is drawn faster); forced off, it
     /// shows the backs of convex objects, which nothing else hides without a depth buffer. With the transform forced off
-    /// an object stays as it was last drawn. The method for hidden surfaces is set by
+    /// the vertices of an object stay as they were last computed, as long as the rest of its plan does; culling, clipping
+    /// and light at pixels are those of its new pose. The method for hidden surfaces is set by
     /// [`Settings::hidden_surfaces`]. If an effect that changes the image is forced on but has nothing to show, it runs
     /// on neutral input (no amplitude, an image that changes nothing). Clipping stays on where the plan requires it.
     pub fn force(&mut self, effect: Effect, on: Option<bool>) {
@@ -184,17 +185,17 @@ impl Renderer {
 
     /// Bounds the error of an object's linear shades against light at every pixel, in the last frame drawn, from
     /// normals, lights and vertices. It is in shades of 1/255 of full intensity, without rounding. `object` is the
-    /// object's index. `None` if the object is flat-shaded, lit at every pixel, out of sight, on the 16.16 path, or does
+    /// object's index. `None` if the object is flat-shaded, lit at every pixel, split, out of sight, on the 16.16 path, or does
     /// not exist; if a material's response is its own; and if the mesh is another, or a plan was made for a change.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;
         let stages = plan.stages();
-        if stages.lights_pixels() || (stages.is_lit() && !stages.interpolates()) {
+        if stages.lights_pixels() || stages.tessellates() || (stages.is_lit() && !stages.interpolates()) {
             return None;
         }
         let object_in_scene = scene.objects().get(object).filter(|object| !plan::has_custom_response(object))?;
-        let state = self.cache.states.get(object).filter(|state| !state.stale)?;
+        let state = self.cache.states.get(object).filter(|state| state.is_made_by(plan))?;
         let faces = state.faces(object_in_scene, plan, self.kernel)?;
         Some(faces.linear_error())
     }

@@ -162,14 +162,23 @@ struct Outputs {
     budget: Budget,
 }
 
+/// The parts of a plan that vertices depend on: stages, shading and budget.
+type Recipe = (Stages, Shading, Option<f32>);
+
+fn recipe(plan: &ObjectPlan) -> Recipe {
+    // Neither how vertices are made nor whether they are seen.
+    let stages = Stages { vertices: VertexStage::Make, is_out_of_sight: false, ..*plan.stages() };
+    (stages, plan.shading(), plan.max_error())
+}
+
 /// One object of a renderer's scene.
 #[derive(Debug, Default)]
 pub(super) struct ObjectState {
     source: Option<VertexInputs>,
     /// True if the source has changed since the vertices were computed.
     pub(super) stale: bool,
-    /// The plan that the vertices were computed by, without its reasons; `None` if they are not valid.
-    pub(super) made_by: Option<Stages>,
+    /// The plan that the vertices were computed by; `None` if they are not valid.
+    pub(super) made_by: Option<Recipe>,
     pub(super) materials: Vec<SurfaceMaterial>,
     /// The source's lamps that are in range.
     lamps: Vec<LampBeam>,
@@ -219,6 +228,11 @@ impl ObjectState {
         self.source.as_ref().map_or(&[], |source| &source.lamps)
     }
 
+    /// Returns whether the vertices were computed by a plan like this, for the state's inputs.
+    pub(super) fn is_made_by(&self, plan: &ObjectPlan) -> bool {
+        !self.stale && self.made_by == Some(recipe(plan))
+    }
+
     /// Computes the vertices, unless last frame's are valid. Returns whether it did.
     pub(super) fn vertices(
         &mut self,
@@ -229,14 +243,12 @@ impl ObjectState {
         kernel: Kernel,
         stats: &mut Stats,
     ) -> bool {
-        let mut stages = *plan.stages();
-        // These do not affect the vertices.
-        (stages.vertices, stages.is_out_of_sight) = (VertexStage::Make, false);
         let has_vertices = core::mem::replace(&mut self.outputs.of_mesh.has_vertices, true);
-        if plan.stages().vertices == VertexStage::Keep && self.made_by == Some(stages) && has_vertices {
+        let made_by = Some(recipe(plan));
+        if plan.stages().vertices == VertexStage::Keep && self.made_by == made_by && has_vertices {
             return false;
         }
-        (self.made_by, self.stale) = (Some(stages), false);
+        (self.made_by, self.stale) = (made_by, false);
         self.take_materials_and_lamps(scene, object, plan);
         self.split_faces(object, plan);
         let Self { source: Some(source), materials, lamps, tessellated, outputs, .. } = self else { return false };

@@ -60,7 +60,8 @@ pub(super) struct Tessellated {
 }
 
 impl Tessellated {
-    /// Splits `geometry` until linear shades are off by at most `tolerance` shades, of which 255 are full intensity.
+    /// Splits `geometry` until no edge [bends](Bend::is_too_great) by more than `tolerance` shades, of which 255 are full
+    /// intensity.
     /// `points` are the indices of the vertices' points.
     #[inline(never)]
     pub(super) fn split(
@@ -235,7 +236,8 @@ struct Bend<'a> {
 }
 
 impl Bend<'_> {
-    /// Returns whether linear shades between the vertices `a` and `b` are off by more than the tolerance.
+    /// Returns whether linear shades between the vertices `a` and `b` are off by more than the tolerance: at the middle,
+    /// or by the bounds of the module's documentation.
     fn is_too_great(&self, mesh: &Tessellated, a: u32, b: u32) -> bool {
         let (a, b) = (a as usize, b as usize);
         let (pa, pb) = (mesh.positions[a], mesh.positions[b]);

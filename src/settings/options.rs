@@ -120,8 +120,10 @@ pub struct Settings {
     pub mapping: Option<Mapping>,
     /// Whether textures are mipmapped.
     pub mipmaps: Option<bool>,
-    /// The tessellation error, in shades of 1/255 of full intensity, above 0: faces are split until the shades along
-    /// their edges are linear to within this. [`Shading::GouraudTessellated`] alone uses one shade.
+    /// The tessellation error, in shades of 1/255 of full intensity, above 0. Edges are halved until the brightness at
+    /// their middles is linear to within this, and no lamp or highlight near them bends it further: into 64 parts at
+    /// most, until there are 262,144 triangles. Highlights that pass between distant vertices of a round object and the
+    /// cones of spot lights may be missed. [`Shading::GouraudTessellated`] alone uses one shade.
     pub tessellation: Option<f32>,
     /// The dither pattern for shades between two entries of a ramp.
     pub dither: Option<DitherPattern>,

@@ -111,7 +111,8 @@ impl Vga {
 
     /// A number that changes with every mutable access to the memory, whether or not a byte changed.
     ///
-    /// Two cards with equal stamps hold equal bytes. The value has no other meaning, and differs from run to run.
+    /// Two cards with equal stamps hold equal bytes. (On processors without atomic additions that holds for one card at two
+    /// times only.) The value has no other meaning, and may differ from run to run.
     #[must_use]
     #[inline]
     pub const fn stamp(&self) -> u64 {
@@ -182,7 +183,7 @@ impl Vga {
     }
 
     /// Loads the palette `t`/256 of the way from `from` to `to`: channel by channel `(from·(256 − t) + to·t) >> 8` in 8
-    /// bits, then reduced to 6. `t` above 256 counts as 256. At 0 and 256 the result is `from` and `to` themselves.
+    /// bits, then reduced to 6. `t` above 256 counts as 256. At 0 and 256 the colours are those of `from` and `to`. The ramps are always those of `to`.
     pub fn fade(&mut self, from: &Palette, to: &Palette, t: u16) {
         let t = u32::from(t.min(256));
         // At most 255·256, so the shifted sum is a byte. Rounded down, as the DAC rounds.

@@ -4,7 +4,7 @@ use crate::support::scenes;
 use crate::support::tried::Tried;
 use mode13h::Angle;
 use mode13h::glam::Vec3;
-use mode13h::light::Light;
+use mode13h::light::{Light, LightResponse};
 use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::BIOS;
 use mode13h::plan::{Effect, Reason};
@@ -57,6 +57,12 @@ fn a_mesh_that_has_changed_since_the_last_frame_has_no_linear_error() {
     let two = cube.clone().with_surfaces(surfaces, of_triangle).expect("a surface for each triangle");
     let mut scene = scenes::framed(cube);
     let (_, _, mut renderer) = draw(&scene, |_| ());
+    assert!(renderer.linear_error(&scene, 0).is_some());
+    renderer.force(Effect::Specular, Some(true));
+    renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
+    assert_eq!(renderer.linear_error(&scene, 0), None, "its materials are those of another plan");
+    renderer.force(Effect::Specular, None);
+    renderer.make_plan(&scene, Screen::MODE_13H).expect("a legal scene");
     assert!(renderer.linear_error(&scene, 0).is_some());
     let id = scene.object_ids()[0];
     scene[id].set_mesh(two);
@@ -352,6 +358,109 @@ fn vertices_that_were_kept_by_force_are_made_when_they_are_let_go() {
         scene.objects_mut()[0].set_mesh(shapes::cube());
         renderer.draw(&scene, &mut vga).expect("a legal scene");
         assert_eq!(differing(vga.pixels(), &draw(&scene, |_| ()).0), 0, "{name}");
+        tried.add(1);
+    }
+}
+
+/// A material with a response of its own is lit at every pixel within any budget, and its plan says why.
+#[test]
+fn an_own_response_has_no_budget() {
+    for mesh in [shapes::torus(24, 12), shapes::cube()] {
+        let mut scene = Scene::showing(mesh);
+        scene.objects_mut()[0].materials[0].response = Some(LightResponse::new(|intensity| intensity * intensity));
+        let lit = draw(&scene, |renderer| renderer.settings.accuracy = Some(Shading::Phong.into())).0;
+        let (bytes, _, renderer) =
+            draw(&scene, |renderer| renderer.settings.accuracy = Some(Accuracy::WithinError(2.0)));
+        assert_eq!(differing(&bytes, &lit), 0);
+        let plan = &renderer.plan().objects()[0];
+        assert_eq!((plan.shading(), plan.max_error()), (Shading::Phong, None));
+        for (effect, on) in [(Effect::Gouraud, false), (Effect::Phong, true)] {
+            assert_eq!((plan[effect].on, plan[effect].reason), (on, Reason::OwnResponse));
+        }
+    }
+}
+
+/// A mesh whose normals are nearly those of its faces is not flat-shaded in light that makes the difference visible.
+#[test]
+fn nearly_faceted_meshes_are_not_flat_in_strong_light() {
+    let wall = shapes::wall(1, 1);
+    let tilted = |at: &Vec3| Vec3::new(-9e-6 * at.x, 0.0, 1.0);
+    let normals = wall.positions().iter().map(tilted).collect();
+    let mesh = Mesh::with_normals(wall.positions().to_vec(), normals, wall.triangles().to_vec()).expect("a wall");
+    let mut scene = Scene::new();
+    scene.add(Object::new(mesh));
+    scene.settings.accuracy = Some(Accuracy::WithinError(1.0));
+    for (intensity, is_flat) in [(1.0, true), (10_000.0, false)] {
+        scene.clear_lights();
+        scene.add_light(Light::sun([1.0, 0.0, 4e-5]).with_intensity(intensity));
+        let plan = draw(&scene, |_| ()).2.plan().objects()[0].shading();
+        assert_eq!(plan == Shading::Flat, is_flat, "{intensity}");
+    }
+}
+
+/// Vertices that are kept by force have what their shading needs: others are computed anew.
+#[test]
+fn vertices_kept_by_force_are_those_of_the_shading() {
+    let within = |shades| Some(Accuracy::WithinError(shades));
+    let keep = |renderer: &mut Renderer| renderer.force(Effect::Transform, Some(false));
+    let fresh = |scene: &Scene, shades: f32| {
+        let prepare = |renderer: &mut Renderer| {
+            renderer.force(Effect::Phong, Some(false));
+            renderer.settings.accuracy = within(shades);
+        };
+        draw(scene, prepare).0
+    };
+    let mut vga = Vga::new();
+    // A budget after none, for faces that are clipped.
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    scene.camera.eye.z *= 0.2;
+    let mut renderer = Renderer::new();
+    renderer.force(Effect::Phong, Some(false));
+    keep(&mut renderer);
+    for accuracy in [None, within(2.0)] {
+        renderer.settings.accuracy = accuracy;
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+    }
+    assert_eq!(differing(vga.pixels(), &fresh(&scene, 2.0)), 0);
+    // A budget that was made for a smaller mesh.
+    let mut scene = Scene::showing(shapes::sphere(8, 4));
+    let mut renderer = Renderer::new();
+    renderer.force(Effect::Phong, Some(false));
+    renderer.settings.accuracy = within(16.0);
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    renderer.settings.accuracy = None;
+    scene.objects_mut()[0].set_mesh(shapes::torus(48, 24));
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    keep(&mut renderer);
+    renderer.settings.accuracy = within(16.0);
+    renderer.draw(&scene, &mut vga).expect("a legal scene");
+    assert_eq!(differing(vga.pixels(), &fresh(&scene, 16.0)), 0);
+    // A table of normals after light at every pixel.
+    let mut renderer = Renderer::new();
+    for (shading, keeps) in [(Shading::PhongTable, false), (Shading::Phong, false), (Shading::PhongTable, true)] {
+        renderer.settings.accuracy = Some(shading.into());
+        renderer.force(Effect::Transform, keeps.then_some(false));
+        renderer.draw(&scene, &mut vga).expect("a legal scene");
+    }
+    let table = draw(&scene, |renderer| renderer.settings.accuracy = Some(Shading::PhongTable.into()));
+    assert_eq!(differing(vga.pixels(), &table.0), 0);
+}
+
+/// An object that is drawn where it was leaves no depths that later frames miss.
+#[test]
+fn depths_of_vertices_kept_by_force_are_cleared() {
+    let mut tried = Tried::new("depths_of_vertices_kept_by_force_are_cleared", 12);
+    let mut scene = Scene::showing(shapes::torus(24, 12));
+    scene.objects_mut()[0].scale = 0.3;
+    let mut renderer = Renderer::new();
+    for i in 0..12 {
+        let is_kept = (3..6).contains(&i);
+        renderer.force(Effect::Transform, is_kept.then_some(false));
+        scene.objects_mut()[0].position.x = if is_kept { 0.6 } else { -0.6 } + i as f32 / 1000.0;
+        let (bytes, _) = scenes::frame_by(&mut renderer, &scene);
+        if !is_kept {
+            assert_eq!(differing(&bytes, &draw(&scene, |_| ()).0), 0, "frame {i}");
+        }
         tried.add(1);
     }
 }
@@ -853,4 +962,7 @@ fn a_near_distance_that_depths_cannot_take_is_told() {
     assert_eq!(needed(&scene), Some(near));
     scene.objects_mut()[0].visible = false;
     assert_eq!(needed(&scene), None, "nothing is seen");
+    let (_, _, renderer) = draw(&scene, |_| ());
+    let of_hidden = Effect::ALL.map(|effect| renderer.plan().objects()[0][effect].reason);
+    assert_eq!(of_hidden, [Reason::Hidden; Effect::COUNT]);
 }

@@ -54,13 +54,15 @@ impl Protocol {
     #[must_use]
     pub fn of_environment(variable: impl Fn(&str) -> Option<OsString>) -> Protocol {
         let text = |name: &str| variable(name).map(|value| value.to_string_lossy().to_ascii_lowercase());
+        let is_set = |name: &str| text(name).is_some_and(|value| !value.is_empty());
         let term = text("TERM").unwrap_or_default();
-        if term.starts_with("tmux") || term.starts_with("screen") {
+        // In both `TERM` may be set to another terminal's name.
+        if term.starts_with("tmux") || term.starts_with("screen") || is_set("TMUX") || is_set("STY") {
             return Protocol::Sixel;
         }
         let program = text("TERM_PROGRAM").unwrap_or_default();
         let is_named = ["kitty", "ghostty"].into_iter().any(|name| term.contains(name) || program == name);
-        let has_window = text("KITTY_WINDOW_ID").is_some_and(|id| !id.is_empty());
+        let has_window = is_set("KITTY_WINDOW_ID");
         if is_named || has_window { Protocol::Kitty } else { Protocol::Sixel }
     }
 
@@ -134,5 +136,7 @@ mod tests {
         assert_eq!(of(&[("TERM", "xterm"), ("KITTY_WINDOW_ID", "1")]), Protocol::Kitty);
         assert_eq!(of(&[("KITTY_WINDOW_ID", "")]), Protocol::Sixel);
         assert_eq!(of(&[("TERM", "tmux-256color"), ("KITTY_WINDOW_ID", "1")]), Protocol::Sixel);
+        assert_eq!(of(&[("TERM", "xterm-kitty"), ("TMUX", "/tmp/tmux-0/default,1,0")]), Protocol::Sixel);
+        assert_eq!(of(&[("TERM", "xterm-kitty"), ("STY", "1.pts-0")]), Protocol::Sixel);
     }
 }

@@ -517,7 +517,7 @@ fn no_pixel_of_a_turn_is_beyond() {
 #[test]
 fn no_pixel_is_beyond_at_any_size() {
     let mut tried = Tried::new("no_pixel_is_beyond_at_any_size", 10_000);
-    for size in [1e-30, 1e-20, 1e-17, 1e-12, 1.0, 1e12, 1e17, 1e20, 1e30] {
+    for size in [1e-30, 2.6e-23, 1e-20, 1e-17, 1e-12, 1.0, 1e12, 1e17, 1e20, 1e30] {
         let mut lamp_alone = Scene::new();
         lamp_alone.add(Object::new(shapes::sphere(12, 6)));
         lamp_alone.camera.eye = Vec3::Z * 5.0;
@@ -529,7 +529,12 @@ fn no_pixel_is_beyond_at_any_size() {
         all.add(Object::new(Mesh::with_normals(positions, normals, sphere.triangles().to_vec()).expect("legal")));
         (all.camera.eye, all.camera.near) = (Vec3::Z * 5.0 * size, 0.1 * size);
         all.add_light(Light::lamp(Vec3::Z * 3.0 * size, 4.0 * size));
-        for (what, scene) in [("a lamp", lamp_alone), ("all", all)] {
+        // At 2.6e-23 the square of the distance is above 0 in f32, and those of the edges are not.
+        let mut wall = Scene::new();
+        wall.add(Object::new(shapes::wall(1, 1).stretched(Vec3::splat(size * 0.7)).expect("legal")));
+        wall.add_light(Light::lamp(Vec3::Z * size * 1.04, (size * 1e9).min(1e18)));
+        (wall.camera.eye, wall.camera.near) = (Vec3::Z * 4.0 * size, 0.1 * size);
+        for (what, scene) in [("a lamp", lamp_alone), ("all", all), ("a wall", wall)] {
             let screen = Screen { width: 96, height: 64, ..Screen::MODE_13H };
             let worst = judged(&mut tried, &scene, screen);
             assert!(worst.beyond <= 0.0, "{what} of size {size}: {worst}");

@@ -244,7 +244,7 @@ pub(super) struct ListedFaces<'a> {
 /// Never called, since there are as many planes. Inlined, it would put them on its caller's stack.
 #[cold]
 #[inline(never)]
-fn unplaced<T: Default>() -> T {
+fn no_planes<T: Default>() -> T {
     T::default()
 }
 
@@ -252,7 +252,7 @@ impl SpanData {
     pub(super) fn new() -> Self {
         let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
         let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
-        let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_else(|_| unplaced());
+        let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_else(|_| no_planes());
         Self { numbers, coordinates, sums, single_sums, planes }
     }
 

@@ -345,13 +345,16 @@ impl Sums {
 
 impl Incident<'_> {
     /// Returns whether all strengths together are small enough for finite sums, and positions and inverse ranges small
-    /// enough for finite squares.
+    /// enough for finite squares, and not so small that these vanish.
     fn is_moderate(&self) -> bool {
         const MODERATE: f32 = 1e6;
         let Lights { suns, lamps, eye } = self.lights;
         let is_near = |at: [f64; 3]| at.iter().all(|c| c.abs() < f64::from(HUGE));
         let lamps_are_near = lamps.iter().all(|lamp| is_near(lamp.position) && lamp.inverse_square < 1e30);
-        if self.extent >= HUGE || !lamps_are_near || (self.reflectance.specular != 0.0 && !is_near(eye)) {
+        if !(1.0 / HUGE..HUGE).contains(&self.extent)
+            || !lamps_are_near
+            || (self.reflectance.specular != 0.0 && !is_near(eye))
+        {
             return false;
         }
         let suns = suns.iter().map(|sun| self.strength(sun.intensity, sun.channels));

@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::ranges::{EightClusters, ZERO};
 use crate::lanes::{LANES, Lanes};
+use crate::mesh::wide::{dot, widen};
 use crate::raster::pick::CHUNK;
 use crate::render::geometry::Geometry;
 
@@ -20,7 +21,11 @@ pub(super) struct Facet {
 
 /// Radius of the smallest ball that contains three points.
 pub(super) fn radius(points: [Vec3; 3]) -> f32 {
-    let square = |(i, j): (usize, usize)| f64::from((points[i] - points[j]).length_squared());
+    // In f32 the squares of short edges would underflow.
+    let square = |(i, j): (usize, usize)| {
+        let edge = widen(points[i] - points[j]);
+        dot(edge, edge)
+    };
     let [a, b, c] = [(0, 1), (1, 2), (2, 0)].map(square);
     let longest = a.max(b).max(c);
     let others = a + b + c - longest;
