@@ -130,7 +130,8 @@ export class Accuracy {
     // A shading that is not on the slider leaves the thumb where it was: any key or touch takes the slider up again, even
     // at its ends, where there is no input.
     const takeUp = () => stopOf(this.page.state) === null && choose();
-    slider.addEventListener("keydown", ({ key }) => key !== "Tab" && key !== "Shift" && takeUp());
+    const keys = ["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "PageUp", "PageDown", "Home", "End"];
+    slider.addEventListener("keydown", ({ key }) => keys.includes(key) && takeUp());
     slider.addEventListener("pointerdown", takeUp);
   }
 
@@ -220,8 +221,8 @@ export class Accuracy {
    */
   async within(limit) {
     if (!(limit > 0)) return;
-    const { engine, state } = this.page;
-    const { toml, seconds, pose } = state;
+    const { engine, version } = this.page;
+    const { toml, seconds, pose } = this.page.state;
     setText(element("found"), "Measuring …");
     // A separate scene, so that the picture is not disturbed.
     const scene = engine.open(toml);
@@ -243,7 +244,7 @@ export class Accuracy {
       else beyond = middle;
     }
     scene.free();
-    if (toml !== state.toml) return setText(element("found"), "");
+    if (toml !== this.page.state.toml || version !== this.page.version) return setText(element("found"), "");
     const stop = Math.max(fits, 0);
     const took = msText(times.get(stop) ?? 0);
     setText(element("found"), fits < 0 ? `Not here: the cheapest takes ${took}.` : `${settingName(settingAt(stop))}, in ${took}.`);

@@ -36,6 +36,7 @@ export class Engine {
     const about = this.json();
     this.shipped = about.shipped;
     this.shadings = about.shadings;
+    this.effects = about.effects;
     this.levels = about.levels;
     this.notTaken = about.notTaken;
   }

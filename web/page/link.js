@@ -2,8 +2,12 @@
 // The link: the part after # holds scene, moment, pose, shading, budget, effects and the other side's setting.
 
 import { HEIGHT, WIDTH } from "./engine.js";
+import { OCTAVES } from "./stops.js";
 
-/** @import { Shipped, State } from "./types.d.ts" */
+/**
+ * @import { Engine } from "./engine.js"
+ * @import { Shipped, State } from "./types.d.ts"
+ */
 
 /**
  * Packs a text for a link.
@@ -46,10 +50,10 @@ export async function linkOf(state, shipped) {
 /**
  * The state in a link; null if the link is not of this kind. Numbers out of range are left out.
  * @param {string} hash
- * @param {Shipped[]} shipped
+ * @param {Pick<Engine, "shipped" | "shadings" | "effects">} engine
  * @returns {Promise<Partial<State> & { name: string, toml: string } | null>}
  */
-export async function stateOf(hash, shipped) {
+export async function stateOf(hash, { shipped, shadings, effects }) {
   const link = new URLSearchParams(hash.slice(1));
   if (!link.has("scene")) return null;
   /**
@@ -67,6 +71,19 @@ export async function stateOf(hash, shipped) {
   const edited = link.get("toml");
   const toml = edited !== null ? await unpackText(edited) : shipped.find((scene) => scene.name === name)?.toml;
   if (toml === undefined) throw new Error(`The link names the scene ${name}, which is not shipped.`);
+  /**
+   * @param {string} what
+   * @param {string} word
+   * @param {string[]} known
+   */
+  const check = (what, word, known) => {
+    if (!known.includes(word)) throw new Error(`The link names the ${what} ${word}, which this page does not have.`);
+  };
+  const switched = link.getAll("effect").map((effect) => effect.split(":"));
+  for (const [effect] of switched) check("effect", effect, effects);
+  const [shading, beside] = ["shading", "beside"].map((key) => link.get(key) ?? "");
+  check("shading", shading, ["", ...shadings]);
+  check("other side", beside, ["", "truth", ...OCTAVES.map((budget) => `max-error ${budget}`), ...shadings.map((name) => `shading ${name}`)]);
   const [x, y] = (link.get("pixel") ?? "").split(",").map(Number);
   const isPixel = link.has("pixel") && Number.isInteger(x) && Number.isInteger(y) && x >= 0 && x < WIDTH && y >= 0 && y < HEIGHT;
   return {
@@ -75,10 +92,10 @@ export async function stateOf(hash, shipped) {
     seconds: number("t", 0, 3600, 0),
     pose: { turn: number("turn", -1000, 1000, 0), tilt: number("tilt", -1000, 1000, 0), zoom: number("zoom", 0.05, 20, 1) },
     maxError: number("max-error", 0.01, 255, null),
-    shading: link.get("shading") ?? "",
-    beside: link.get("beside") ?? "",
+    shading,
+    beside,
     divider: number("at", 0, 1, 0.5),
     pixel: isPixel ? { x, y } : null,
-    effects: Object.fromEntries(link.getAll("effect").map((effect) => effect.split(":")).map(([effect, on]) => [effect, on === "on"])),
+    effects: Object.fromEntries(switched.map(([effect, on]) => [effect, on === "on"])),
   };
 }

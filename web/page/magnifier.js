@@ -11,6 +11,18 @@ import { ARROWS } from "./picture.js";
  * @import { Account, Picture, Pixel, Registers } from "./types.d.ts"
  */
 
+/**
+ * The shades of light at the pixel: one, or those of red, green and blue.
+ * @param {[number, number, number]} shades
+ * @param {number} error
+ */
+function litText([red, green, blue], error) {
+  const off = `${error < 0 ? "−" : "+"}${Math.abs(error).toFixed(2)}`;
+  if (red === green && green === blue) return `Lit at the pixel itself it would be ${red.toFixed(2)} shades: this is off by ${off}.`;
+  const shades = [red, green, blue].map((shade) => shade.toFixed(2));
+  return `Lit at the pixel itself red, green and blue would be ${shades.join(", ")} shades: the one farthest off is off by ${off}.`;
+}
+
 const LENS = { columns: 21, rows: 13, zoom: 20 };
 
 export class Magnifier {
@@ -32,7 +44,7 @@ export class Magnifier {
     this.canvas.height = LENS.rows * LENS.zoom;
     this.canvas.addEventListener("keydown", (event) => {
       const arrow = ARROWS[event.key];
-      if (!arrow) return;
+      if (!arrow || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       page.movePixel(...arrow);
     });
@@ -40,7 +52,8 @@ export class Magnifier {
       this.#isSeen = isIntersecting;
       page.redraw();
     }).observe(element("pixel"));
-    this.canvas.addEventListener("pointerdown", (event) => {
+    // A click, so that a finger can scroll the page here.
+    this.canvas.addEventListener("click", (event) => {
       const box = this.canvas.getBoundingClientRect();
       const column = Math.floor(((event.clientX - box.left) / box.width) * LENS.columns);
       const row = Math.floor(((event.clientY - box.top) / box.height) * LENS.rows);
@@ -163,7 +176,7 @@ export class Magnifier {
 
   /** @param {Account} account */
   #say(account) {
-    const { x, y, byte, color, registers, exact, against = [], object, triangle } = account;
+    const { x, y, byte, color, registers, exact, isRamp, against = [], object, triangle } = account;
     const parts = this.#parts;
     /**
      * @param {number} number
@@ -177,9 +190,8 @@ export class Magnifier {
     parts.registers.hidden = !registers;
     if (registers) this.#sayRegisters(registers, hex);
     const lit = against.find(([standard]) => standard === "lit");
-    setText(parts.exact, typeof exact === "number" ? `The exact shade here is ${exact.toFixed(4)}.` : "");
-    const off = lit && `${lit[2] < 0 ? "−" : "+"}${Math.abs(lit[2]).toFixed(2)}`;
-    setText(parts.off, lit ? `Lit at the pixel itself it would be ${lit[1].toFixed(2)} shades: this is off by ${off}.` : "");
+    setText(parts.exact, exact === undefined ? "" : `The exact ${isRamp ? "palette entry" : "shade"} here is ${exact.toFixed(4)}.`);
+    setText(parts.off, lit ? litText(lit[1], lit[2]) : "");
     setText(parts.text, account.text.trim());
   }
 
@@ -187,8 +199,7 @@ export class Magnifier {
    * @param {Registers} registers
    * @param {(number: number, digits: number) => string} hex
    */
-  #sayRegisters({ eax, ebx, cx, edi }, hex) {
-    const isWide = eax > 0xffff || ebx > 0xffff;
+  #sayRegisters({ eax, ebx, cx, edi, isWide }, hex) {
     const digits = isWide ? 8 : 4;
     const ax = hex(eax, digits);
     // The byte is AH, or in 16.16 the third of EAX.

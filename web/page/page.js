@@ -51,6 +51,11 @@ export class Page {
    * @type {string | undefined}
    */
   written;
+  /**
+   * The state of a link whose scene could not be opened, perhaps because of files that have yet to be dropped.
+   * @type {NonNullable<Awaited<ReturnType<typeof stateOf>>> | null}
+   */
+  #waiting = null;
   /** @type {Map<string, Uint8Array>} */
   #files = new Map();
   #last = 0;
@@ -221,9 +226,18 @@ export class Page {
     this.background.setFiles(files);
   }
 
-  /** Dropped files that the scene names; links do not contain them. */
+  /** Dropped files that the scene or a file of its names; links do not contain them. */
   namedFiles() {
-    return [...this.#files.keys()].filter((name) => this.state.toml.includes(name));
+    const texts = [this.state.toml];
+    const left = new Set(this.#files.keys());
+    for (const text of texts) {
+      for (const name of left) {
+        if (!text.includes(name)) continue;
+        left.delete(name);
+        if (/\.(obj|mtl)$/i.test(name)) texts.push(new TextDecoder().decode(this.#files.get(name)));
+      }
+    }
+    return [...this.#files.keys()].filter((name) => !left.has(name));
   }
 
   /**
@@ -234,6 +248,7 @@ export class Page {
    */
   open(toml, name, keepsMoment = false) {
     const scene = this.engine.open(toml);
+    this.#waiting = null;
     this.scene.free();
     this.other?.free();
     this.scene = scene;
@@ -277,7 +292,8 @@ export class Page {
     this.moveDivider(state.divider);
     this.#isStale = true;
     clearTimeout(this.#linkTimer);
-    this.#linkTimer = setTimeout(() => this.link(), 400);
+    // A link that waits for its files stays in the address bar.
+    this.#linkTimer = setTimeout(() => this.#waiting ?? this.link(), 400);
   }
 
   /**
@@ -322,12 +338,32 @@ export class Page {
    */
   async follow(hash) {
     if (hash === this.written) return;
-    const linked = await stateOf(hash, this.engine.shipped);
-    if (!linked) return;
-    const { toml, name, ...rest } = linked;
+    this.#waiting = null;
+    this.#waiting = await stateOf(hash, this.engine);
+    this.#openLinked();
+  }
+
+  #openLinked() {
+    if (!this.#waiting) return;
+    const { toml, name, ...rest } = this.#waiting;
     this.open(toml, name);
     this.#swept = null;
     this.choose({ ...rest, playing: false });
+  }
+
+  /**
+   * Opens the link that waits for files, if any, now that these are there. Returns whether it is open.
+   * @param {string[]} names
+   */
+  retry(names) {
+    const waiting = this.#waiting;
+    if (!waiting) return false;
+    try {
+      this.#openLinked();
+    } catch (error) {
+      if (names.some((name) => waiting.toml.includes(name))) throw error;
+    }
+    return !this.#waiting;
   }
 
   /**
@@ -370,12 +406,14 @@ export class Page {
       if (this.#isDrawn && isSeen) this.#time();
       this.accuracy.tell(now);
       this.#stops = 0;
+      if (this.#isDrawn && this.#troubles.has("picture")) this.trouble("picture");
     } catch (error) {
       this.#isDrawn = false;
       // A single trap may be chance; a scene that traps the engine again is given up.
       if (error instanceof EngineStopped && ++this.#stops > 2) this.open(this.engine.shipped[0].toml, this.engine.shipped[0].name);
-      this.trouble("picture", messageOf(error));
-      if (!(error instanceof EngineStopped)) this.choose({ playing: false });
+      this.trouble(error instanceof EngineStopped ? "engine" : "picture", messageOf(error));
+      // Once: each change writes the link anew.
+      if (!(error instanceof EngineStopped) && state.playing) this.choose({ playing: false });
     }
     requestAnimationFrame((next) => this.frame(next));
   }
@@ -443,7 +481,7 @@ export class Page {
   #showBeside(edge) {
     const { state } = this;
     if (state.beside === "truth") {
-      const key = JSON.stringify([state.toml, state.seconds, state.pose]);
+      const key = JSON.stringify([state.toml, this.version, state.seconds, state.pose]);
       if (this.#exact) this.canvas.show(this.#exact.frame, edge);
       if (this.#exact?.key !== key) this.#askExact(key);
       return;
@@ -493,4 +531,6 @@ export async function begin({ wasm, worker }) {
   page.scenes.follow();
   for (const part of /** @type {NodeListOf<HTMLElement>} */ (document.querySelectorAll("[data-needs-text]"))) part.hidden = !element("text").firstElementChild;
   mountFigures(engine);
+  // A place in the text, which was not there when the page was opened.
+  if (!location.hash.includes("=")) document.getElementById(location.hash.slice(1))?.scrollIntoView();
 }

@@ -127,8 +127,8 @@ export function handle(canvas, on) {
       const [dx, dy] = arrow;
       if (event.shiftKey) on.move(dx, dy);
       else on.turn(dx * KEY_TURN, dy * KEY_TURN);
-    } else if (event.key === " ") on.play();
-    else if (event.key === "Enter") on.choose();
+    } else if (event.key === " ") event.repeat || on.play();
+    else if (event.key === "Enter") event.repeat || on.choose();
     else if (event.key === "+" || event.key === "=") on.zoom(1.1);
     else if (event.key === "-") on.zoom(1 / 1.1);
     else return;

@@ -98,14 +98,14 @@ export class PlanTable {
    * @param {HTMLTableRowElement} line
    * @param {PlanRow} row
    */
-  #update(line, { effect, on, choice, reason }) {
+  #update(line, { place, effect, on, choice, reason }) {
     const [name, switched, cost, why] = line.cells;
     const box = /** @type {HTMLInputElement} */ (switched.firstElementChild);
     line.classList.toggle("on", on);
     line.classList.toggle("unused", !on && reason === "no material has it");
     if (box.checked !== on) box.checked = on;
     setText(/** @type {Element} */ (name.firstElementChild), choice && on ? `${effect}: ${choice}` : effect);
-    setText(cost, this.#priceText(this.#prices.get(effect), on));
+    setText(cost, this.#priceText(this.#prices.get(`${place} ${effect}`), on));
     setText(why, plainReason(reason));
   }
 
@@ -122,30 +122,34 @@ export class PlanTable {
   /** Measures how much longer a frame takes with each effect than without, drawing the two in turn. */
   async measure() {
     const button = element("price");
-    const { engine, state } = this.page;
-    const { toml } = state;
+    const { engine, version } = this.page;
+    const { toml } = this.page.state;
     // A separate scene, so that the picture is not disturbed.
     const scene = engine.open(toml);
     button.disabled = true;
     const rows = this.rows.filter((row) => row.place === Number(element("object").value || 0));
-    for (const [at, { effect, on }] of rows.entries()) {
-      button.textContent = `Measuring ${at + 1} of ${rows.length}`;
-      await new Promise((resolve) => setTimeout(resolve));
-      if (toml !== state.toml) break;
-      this.#prices.set(effect, FIXED.includes(effect) ? null : this.#price(scene, effect, on));
-      this.show(this.rows);
+    try {
+      for (const [at, { place, effect, on }] of rows.entries()) {
+        button.textContent = `Measuring ${at + 1} of ${rows.length}`;
+        await new Promise((resolve) => setTimeout(resolve));
+        if (toml !== this.page.state.toml || version !== this.page.version) break;
+        this.#prices.set(`${place} ${effect}`, FIXED.includes(effect) ? null : this.#price(scene, place, effect, on));
+        this.show(this.rows);
+      }
+    } finally {
+      scene.free();
+      button.disabled = false;
+      button.textContent = "Measure again";
     }
-    scene.free();
-    button.disabled = false;
-    button.textContent = "Measure again";
   }
 
   /**
    * @param {Scene} scene
+   * @param {number} place
    * @param {string} effect
    * @param {boolean} on
    */
-  #price(scene, effect, on) {
+  #price(scene, place, effect, on) {
     const { seconds, pose } = this.page.state;
     const usual = this.page.settings();
     const switched = { ...usual, effects: { ...usual.effects, [effect]: !on } };
@@ -158,7 +162,7 @@ export class PlanTable {
     };
     lap(usual);
     lap(switched);
-    if (scene.plan().find((row) => row.effect === effect)?.on === on) return null;
+    if (scene.plan().find((row) => row.place === place && row.effect === effect)?.on === on) return null;
     for (let round = 0; round < ROUNDS_OF_PRICE; round++) {
       const [as, other] = [lap(usual), lap(switched)];
       differences.push(on ? as - other : other - as);

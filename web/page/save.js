@@ -28,9 +28,10 @@ export function offerFiles(page) {
   const gif = element("save-gif");
   gif.addEventListener("click", async () => {
     gif.disabled = true;
+    const { name } = page.state;
     const film = await page.ask("film", page.question(), (part) => setText(element("saved"), `GIF: ${Math.round(100 * part)} %`));
     gif.disabled = false;
-    if (film) save(`${page.state.name}.gif`, film.file, "image/gif");
+    if (film) save(`${name}.gif`, film.file, "image/gif");
   });
   element("copy-link").addEventListener("click", async () => {
     await page.link();

@@ -16,6 +16,13 @@ const PAUSE = 300;
 /** The extensions of files that may be dropped. */
 const TAKEN = [".obj", ".mtl", ".png", ".toml"];
 
+/**
+ * Whether a scene's text names a file, in any folder.
+ * @param {string} toml
+ * @param {string} file
+ */
+const names = (toml, file) => ["'", '"'].some((quote) => [quote, "/"].some((before) => toml.includes(before + file + quote)));
+
 export class Scenes {
   #timer = 0;
   /** @type {Map<string, Uint8Array>} */
@@ -34,14 +41,17 @@ export class Scenes {
     const drop = element("drop");
     // The whole page accepts files, so that a drop that misses its target does not leave the page.
     addEventListener("dragover", (event) => {
+      // Text can be dragged as usual.
+      if (!event.dataTransfer?.types.includes("Files")) return;
       event.preventDefault();
       drop.classList.add("over");
     });
     addEventListener("dragleave", ({ relatedTarget }) => relatedTarget ?? drop.classList.remove("over"));
     addEventListener("drop", (event) => {
-      event.preventDefault();
       drop.classList.remove("over");
-      const files = [...(event.dataTransfer?.files ?? [])];
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      const files = [...event.dataTransfer.files];
       if (files.length) this.take(files);
     });
     const chosen = element("files");
@@ -112,10 +122,11 @@ export class Scenes {
   }
 
   /**
-   * The name of a scene that was edited: its own, unless the text is that of a shipped one.
+   * The name of a scene that was edited: its own, unless the text is the present one or that of a shipped one.
    * @param {string} toml
    */
   #nameOf(toml) {
+    if (toml === this.page.state.toml) return this.page.state.name;
     const shipped = this.page.engine.shipped.find((scene) => scene.toml === toml);
     return shipped?.name ?? `${this.page.state.name.replace(/-edited$/, "")}-edited`;
   }
@@ -148,12 +159,15 @@ export class Scenes {
     for (const file of files) this.#files.set(file.name, new Uint8Array(await file.arrayBuffer()));
     this.page.setFiles(this.#files);
     element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${group(bytes.length)} bytes`)));
+    // A link that waited for these files brings its scene, pose and settings.
+    if (this.page.retry(files.map((file) => file.name))) return;
     /** @param {string} extension */
     const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
     const [scene, model] = [find(".toml"), find(".obj")];
+    const text = this.text.value;
     if (scene) this.page.open(await scene.text(), scene.name.replace(/\.toml$/i, ""));
-    else if (model) this.page.open(this.#showing(model.name), model.name.replace(/\.obj$/i, ""));
-    else this.page.open(this.page.state.toml, this.page.state.name);
+    else if (model && !names(text, model.name)) this.page.open(this.#showing(model.name), model.name.replace(/\.obj$/i, ""));
+    else this.page.open(text, this.#nameOf(text), true);
     element("instrument").scrollIntoView({ behavior: isStill() ? "auto" : "smooth" });
   }
 

@@ -39,8 +39,16 @@ export function stopOf({ maxError, shading }) {
   return shading === CHEAPEST ? 0 : null;
 }
 
-/** @param {number} shades */
-export const shadesText = (shades) => (shades === 0.5 ? "½" : `${Number(shades.toPrecision(2))}`);
+/**
+ * A bound, rounded up to two digits.
+ * @param {number} shades
+ */
+export function shadesText(shades) {
+  if (shades === 0.5) return "½";
+  const unit = 10 ** (Math.floor(Math.log10(shades)) - 1);
+  // A quotient that should be whole may be a little more.
+  return `${Number((Math.ceil(shades / unit - 1e-9) * unit).toPrecision(2))}`;
+}
 /** @param {number} budget */
 export const budgetText = (budget) => `${shadesText(budget)} ${budget <= 1 ? "shade" : "shades"}`;
 

@@ -20,8 +20,11 @@ export const CLOCK_STEP = (() => {
   return Number(step.toFixed(4));
 })();
 
-/** Minimum length of a lap in milliseconds: at least forty steps of the clock. */
-const LAP = Math.max(2, 40 * CLOCK_STEP);
+/**
+ * Minimum length of a lap in milliseconds: forty steps of the clock, or one of a clock that is so coarse that more would
+ * make the page jerk. A lap begins and ends just after a step, so it is off by one frame at most.
+ */
+const LAP = Math.max(2, Math.min(40 * CLOCK_STEP, 10), CLOCK_STEP);
 /** Number of laps that are kept, so 50 frames or more; and how many there must be before a time is shown. */
 export const KEPT_LAPS = 50;
 const FIRST_LAPS = 5;
@@ -68,7 +71,9 @@ export class Stopwatch {
     scene.draw();
     const isRedrawn = scene.counts().redrawn;
     let [frames, took] = [0, 0];
-    const begun = performance.now();
+    const before = performance.now();
+    let begun = before;
+    while (begun === before) begun = performance.now();
     while (took < LAP || frames % 2 === 0) {
       scene.show(frames % 2 ? seconds + NEXT_MOMENT : seconds, pose);
       scene.draw(true);

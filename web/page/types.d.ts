@@ -38,7 +38,7 @@ export interface Lap { ms: number; isRedrawn: boolean }
 
 export interface Shipped { name: string; toml: string; shows: string }
 export interface Level { label: string; color: string }
-export interface About { shipped: Shipped[]; shadings: string[]; levels: Level[]; notTaken: string; kernel: string; version: string }
+export interface About { shipped: Shipped[]; shadings: string[]; effects: string[]; levels: Level[]; notTaken: string; kernel: string; version: string }
 export interface SceneAbout { name: string; duration: number; picture: number; objects: number; faces: number; warnings: string[] }
 export interface Counts {
   shading: string; maxError: number | null; redrawn: boolean; faces: number; drawn: number;
@@ -55,12 +55,13 @@ export interface Errors {
 }
 /** Errors, and the level of each pixel. */
 export interface Judged extends Errors { map: Uint8Array }
-export interface Registers { eax: number; ebx: number; cx: number; edi: number }
+export interface Registers { eax: number; ebx: number; cx: number; edi: number; isWide: boolean }
 export interface Account {
   x: number; y: number; byte: number; color: string; text: string; shading: string;
-  /** A standard, the shade by it, and how far off the byte is. */
-  against?: [string, number, number][];
-  exact?: number | null; object?: string; triangle?: number;
+  /** A standard; the shade by it, or red, green and blue; and how far off the shade is that is farthest off. */
+  against?: [string, [number, number, number], number][];
+  /** Of a ramp it is an entry, otherwise a shade. */
+  exact?: number; isRamp?: boolean; object?: string; triangle?: number;
   corners?: [number, number, number][];
   registers?: Registers | null;
 }

@@ -79,6 +79,7 @@ const questions = {
   film(question, say) {
     const scene = sceneOf(question);
     scene.set(question.settings);
+    scene.show(question.seconds, question.pose);
     const frames = Math.max(1, Math.round(scene.about.duration * RATE));
     let file = null;
     for (let number = 0; number < frames; number++) {
@@ -97,6 +98,7 @@ onmessage = async ({ data }) => {
   await ready;
   if (data.files) {
     engine.setFiles(data.files);
+    known.scene?.free();
     known = { key: "", scene: null };
     return;
   }

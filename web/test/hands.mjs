@@ -18,6 +18,9 @@ suite.run(async () => {
   await pose(tab);
   await pinch();
   await names(tab);
+  await waiting(tab);
+  await measuring(tab);
+  await explained(tab);
   await account();
   suite.check("nothing was said on the console", tab.said.length === 0, tab.said.join("; "));
 });
@@ -231,6 +234,75 @@ async function names(tab) {
   await click(tab, "#copy-link");
   await until(tab, "element('saved').textContent.includes('does not include mine.obj')");
   suite.check("a link says what it cannot carry", true);
+}
+
+/** A text or a link that names files which are dropped afterwards. */
+async function waiting(tab) {
+  const drop = (name, text) => tab.evaluate(`page.scenes.take([new File([${JSON.stringify(text)}], ${JSON.stringify(name)})])`);
+  const triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const texts = ["first", "second"].map((name) => `objects = [{ model = "${name}.obj" }]\nlights = [{ sun = [0.4, 0.6, 1] }]\n`);
+  await openScene(tab, "cube");
+  await tab.evaluate(`(() => { const area = element('toml'); area.value = ${JSON.stringify(texts[0])}; area.dispatchEvent(new Event('input')); })()`);
+  await until(tab, "element('verdict').textContent.includes('not on the page')");
+  await drop("other.mtl", "newmtl any\n");
+  suite.check("a file that is dropped leaves the text that is being written", (await tab.evaluate("element('toml').value")) === texts[0]);
+  await drop("first.obj", triangle);
+  suite.check("and the model that the text names is shown by that text", await tab.evaluate(`page.state.toml === ${JSON.stringify(texts[0])} && page.scene.about.faces === 1`));
+  const link = await tab.evaluate(`(async () => {
+    page.open(${JSON.stringify(texts[0])}, "linked");
+    page.choose({ pose: { turn: 0.5, tilt: 0, zoom: 2 }, maxError: 4, pixel: { x: 20, y: 30 } });
+    await page.link();
+    return location.hash;
+  })()`);
+  const other = await suite.open({ link });
+  await until(other, "element('trouble').textContent.includes('not on the page')");
+  await frames(other, TOLD);
+  suite.check("a link that lacks its model stays in the address", (await other.evaluate("location.hash")) === link);
+  await other.evaluate(`page.scenes.take([new File([${JSON.stringify(triangle)}], "first.obj")])`);
+  const shown = await other.evaluate("[page.state.name, page.state.pose.turn, page.state.pose.zoom, page.state.maxError, page.state.pixel.x]");
+  suite.check("and opens with its pose and settings once that is dropped", shown.join() === "linked,0.5,2,4,20", shown.join());
+  await other.context().close();
+  for (const [wrong, said] of [["effect=zzz:on", "the effect zzz"], ["shading=none", "the shading none"], ["beside=nothing", "the other side nothing"]]) {
+    await tab.evaluate(`location.hash = '#scene=torus&${wrong}'`);
+    await until(tab, `element('trouble').textContent.includes(${JSON.stringify(said)})`);
+  }
+  suite.check("a link with an unknown name says which", true);
+}
+
+/** What was measured of one scene is not said of another. */
+async function measuring(tab) {
+  await openScene(tab, "teapot");
+  await tab.evaluate("page.choose({ maxError: 4, beside: '' })");
+  await tab.evaluate("(async () => { const found = page.accuracy.within(0.0001); await new Promise((done) => setTimeout(done)); page.open(page.engine.shipped.find(({ name }) => name === 'cube').toml, 'cube'); await found; })()");
+  suite.check("a search is given up when another scene is opened", await tab.evaluate("page.state.maxError === 4 && element('found').textContent === ''"));
+  await openScene(tab, "teapot");
+  await tab.evaluate("page.redraw()");
+  await until(tab, "page.plan.rows[0]?.object !== 'cube'");
+  await tab.evaluate("(async () => { const prices = page.plan.measure(); await new Promise((done) => setTimeout(done)); page.open(page.engine.shipped.find(({ name }) => name === 'cube').toml, 'cube'); await prices; })()");
+  await frames(tab, TOLD);
+  const prices = await tab.evaluate("[...document.querySelectorAll('#plan tbody td.number')].map((cell) => cell.textContent).join('')");
+  suite.check("and prices of one scene are not shown for another", prices === "", prices);
+}
+
+/** The explanation of a pixel says nothing of a shade where there is none. */
+async function explained(tab) {
+  const account = (name, setting) => tab.evaluate(`(() => {
+    page.open(page.engine.shipped.find(({ name }) => name === ${JSON.stringify(name)}).toml, ${JSON.stringify(name)});
+    page.choose(${JSON.stringify({ maxError: null, shading: "", ...setting, playing: false })});
+    page.drawLeft();
+    for (let y = 5; y < 200; y += 10) for (let x = 5; x < 320; x += 10) {
+      const account = page.scene.explain(x, y);
+      if (account.object !== undefined) return account;
+    }
+  })()`);
+  const table = await account("phong-table", {});
+  suite.check("a table of normals has no exact shade", table.exact === undefined && table.registers === null, JSON.stringify(table.exact));
+  const channels = await account("rgb", {});
+  suite.check("nor have three channels, or registers", channels.exact === undefined && channels.registers === null, JSON.stringify(channels.registers));
+  const ramp = await account("cube", { shading: "gouraud-8.8" });
+  suite.check("the value of a ramp is called an entry", ramp.isRamp === true, JSON.stringify(ramp));
+  const wide = await account("torus", { shading: "gouraud-16.16" });
+  suite.check("in 16.16 the registers are wide", wide.registers.isWide === true, JSON.stringify(wide.registers));
 }
 
 /** The divider moves once by itself and stops in the middle, unless the reader asks for less motion. */

@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { FIRST_STATE, Store } from "../page/state.js";
-import { LAST_STOP, settingAt, stopOf } from "../page/stops.js";
+import { LAST_STOP, OCTAVES, settingAt, shadesText, stopOf } from "../page/stops.js";
 
 test("views hear of a change with the state before it", () => {
   const store = new Store(FIRST_STATE);
@@ -50,4 +50,13 @@ test("the slider's thumb stays where it was under a shading that is not on it", 
     store.choose({ maxError: null, shading: "phong" });
     assert.equal(store.state.stop, stop);
   }
+});
+
+test("budgets are shown exactly or rounded up", () => {
+  for (let stop = 1; stop <= LAST_STOP; stop++) {
+    const { maxError } = settingAt(stop);
+    const shown = maxError === 0.5 ? 0.5 : Number(shadesText(maxError));
+    assert.ok(shown >= maxError && shown < 1.1 * maxError, `${maxError} is shown as ${shown}`);
+  }
+  assert.deepEqual(OCTAVES.map(shadesText), ["16", "8", "4", "2", "1", "½"]);
 });

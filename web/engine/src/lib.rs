@@ -106,6 +106,7 @@ extern "C" fn about() {
     let about = json!({
         "shipped": shipped.collect::<Value>(),
         "shadings": mode13h::settings::Shading::ALL.map(mode13h::settings::Shading::name),
+        "effects": mode13h::plan::Effect::ALL.map(mode13h::plan::Effect::name),
         "levels": levels.collect::<Value>(),
         "notTaken": format!("#{:06x}", error_levels::NOT_TAKEN),
         "kernel": mode13h::span::Kernel::default().name(),

@@ -1,7 +1,9 @@
 //! Plan, counts and the explanation of a pixel as JSON.
 
+use mode13h::internals::ShadeTrace;
+use mode13h::palette::Ramp;
 use mode13h::plan::Row;
-use mode13h::raster::Vertex;
+use mode13h::raster::{Interpolation, Vertex};
 use mode13h::render::{Renderer, Screen, Stats};
 use mode13h::scene::Scene;
 use mode13h_lab::explain::{self, FaceHere, Pixel, Registers, Seen, ShadedBy};
@@ -37,15 +39,20 @@ pub(crate) fn pixel(renderer: &mut Renderer, scene: &Scene, x: u32, y: u32) -> R
     });
     if let Some(seen) = pixel.seen.last() {
         let against = seen.against.iter();
-        account["against"] = against.map(|of| json!([of.standard.name(), of.shades[0], of.error])).collect();
-        account["exact"] =
-            seen.accounts.first().and_then(|trace| trace.exact).map(|exact| exact.to_f64() / 256.0).into();
+        account["against"] = against.map(|of| json!([of.standard.name(), of.shades, of.error])).collect();
+        if let Some(exact) = shade_trace(seen).and_then(|trace| trace.exact) {
+            account["exact"] = (exact.to_f64() / 256.0).into();
+            account["isRamp"] = (seen.ramp != Ramp::WHOLE).into();
+        }
         if let Some(face) = pixel.faces.get(seen.face) {
             account["object"] = json!(pixel.objects.get(face.object));
             account["triangle"] = json!(face.triangle);
             account["corners"] = face.corners.iter().map(corner).collect();
-            account["registers"] = registers(&pixel, face, seen)
-                .map_or(Value::Null, |of| json!({ "edi": of.edi, "eax": of.eax, "ebx": of.ebx, "cx": of.cx }));
+            let is_wide = face.interpolation == Interpolation::Gouraud1616;
+            account["registers"] = registers(&pixel, face, seen).map_or(
+                Value::Null,
+                |of| json!({ "edi": of.edi, "eax": of.eax, "ebx": of.ebx, "cx": of.cx, "isWide": is_wide }),
+            );
         }
     }
     Ok(account)
@@ -61,11 +68,18 @@ fn corner(vertex: &Vertex) -> Value {
     ])
 }
 
+/// The way of the one shade from the corners to the pixel; `None` for channels, and for light computed at pixels or looked
+/// up in a table.
+fn shade_trace(seen: &Seen) -> Option<&ShadeTrace> {
+    match seen.accounts.as_slice() {
+        [trace] if seen.shaded_by == ShadedBy::Corners => Some(trace),
+        _ => None,
+    }
+}
+
 /// The registers of the loop of 1994 at the pixel, for shadings whose loop keeps a sum.
 fn registers(pixel: &Pixel, face: &FaceHere, seen: &Seen) -> Option<Registers> {
-    if seen.shaded_by != ShadedBy::Corners {
-        return None;
-    }
+    shade_trace(seen)?;
     let width = Screen::MODE_13H.width;
     Registers::at(pixel.x, pixel.y, &face.corners, (face.interpolation, seen.exact_cover), width)
 }

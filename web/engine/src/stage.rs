@@ -49,7 +49,8 @@ pub(crate) struct Stage {
     truth: Option<TruthFrame>,
     probe: Probe,
     error_map: Vec<u8>,
-    film: Option<GifWriter<Vec<u8>>>,
+    /// An animation, and the pose in which it begins.
+    film: Option<(GifWriter<Vec<u8>>, Pose)>,
 }
 
 impl Stage {
@@ -223,20 +224,20 @@ impl Stage {
         Png::default().encode(&Picture::mode_13h(self.vga.pixels(), &palette)).map_err(|error| error.to_string())
     }
 
-    /// Adds a frame of one round to the animation.
+    /// Adds a frame of one round, from the pose shown last, to the animation.
     pub(crate) fn film(&mut self, number: u32, frames: u32) -> Result<Vec<u8>, String> {
         let new = || GifWriter::new(Vec::new(), Scale::To { width: 640, height: 480 }, FrameRate::default());
         if number == 0 {
-            self.film = Some(new());
+            self.film = Some((new(), self.moment.1));
         }
-        let mut film = self.film.take().ok_or("the film has no first frame")?;
+        let (mut film, first) = self.film.take().ok_or("the film has no first frame")?;
         let degrees = 360.0 * f64::from(number) / f64::from(frames.max(1));
         let (seconds, pose) = self.turntable.turned(0.0, degrees);
-        self.show(seconds, pose)?;
+        self.show(seconds, Pose { turn: first.turn + pose.turn, ..first })?;
         self.draw(false)?;
         film.add(&Picture::mode_13h(self.vga.pixels(), &self.vga.palette())).map_err(|error| error.to_string())?;
         if number + 1 < frames {
-            self.film = Some(film);
+            self.film = Some((film, first));
             return Ok(Vec::new());
         }
         film.finish().map(|(bytes, _)| bytes).map_err(|error| error.to_string())

@@ -160,7 +160,7 @@ export function handle(on, { label, at, move, nudge, say, kind = "", anywhere = 
   }
   button.addEventListener("keydown", (event) => {
     const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] }[event.key];
-    if (!step) return;
+    if (!step || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     nudge(...step.map((s) => s * (event.shiftKey ? 8 : 1)));
     on.repaint();

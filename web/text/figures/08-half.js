@@ -19,9 +19,9 @@ M.figure("half", (stage) => {
       const [left, bottom, top] = [30, h - 34, 8];
       const cell = (w - left - 4) / PIXELS;
       const low = 19.5;
-      const high = 28.5;
+      const high = 29.5;
       const y = (s) => bottom - (s - low) / (high - low) * (bottom - top);
-      for (let s = 20; s <= 28; s++) {
+      for (let s = 20; s <= 29; s++) {
         M.line(c, [[left, y(s)], [w - 4, y(s)]], ink.line);
         if (s % 2 === 0) M.text(c, String(s), left - 6, y(s) + 4, ink.muted, { align: "right" });
       }
@@ -33,7 +33,7 @@ M.figure("half", (stage) => {
         c.fillRect(x, Math.min(y(exact), y(bytes[k])), cell, Math.abs(y(exact) - y(bytes[k])));
         c.globalAlpha = 1;
         M.line(c, [[x, y(bytes[k])], [x + cell, y(bytes[k])]], ink.ink, 2.5);
-        // Nine shades spread over the whole range of greys, to be visible.
+        // Ten shades spread over the whole range of greys, to be visible.
         c.fillStyle = M.grey(M.clamp(Math.round((bytes[k] - 19) * 25), 0, 255));
         c.fillRect(x, bottom + 4, cell + .5, 14);
       }
@@ -66,7 +66,8 @@ M.figure("half", (stage) => {
     chart.describe(`Exact shades and bytes along ${PIXELS} pixels; mean error ${M.signed(mean)} shades`);
     say("Mean error ", { b: `${M.signed(mean)} shades`, warn: Math.abs(mean) > .1 },
       ", worst ", { b: `${worst.toFixed(2)} shades`, warn: worst > .5 }, " over the row.",
-      mean < -.1 ? " The row is too dark." : mean > .1 ? " The row is too bright." : " The byte is the nearest shade.");
+      mean < -.1 ? " The row is too dark." : mean > .1 ? " The row is too bright."
+        : worst > .5 ? " Not every byte is the nearest shade." : " Every byte is the nearest shade.");
     chart.repaint();
   }
   show();

@@ -23,9 +23,10 @@ export function coverVintage(corners, width, height, into = new Uint8Array(width
 }
 
 // Where a pixel's centre lies: 1 inside, 0 on an edge, −1 outside. In 1/256 pixel, by the three
-// edge functions.
+// edge functions. A triangle without area has no inside, and draws nothing.
 export function whereIsCentre(corners, x, y) {
   const { v: [a, b, c], area } = M.sorted(corners);
+  if (area === 0) return -1;
   const [px, py] = [x * 256 + 128, y * 256 + 128];
   let least = Infinity;
   for (const [p, q] of [[a, b], [b, c], [c, a]]) {

@@ -211,7 +211,7 @@ export function drawChart(element, given, options = {}) {
   element.onpointerdown = ({ target }) => (element.dataset.pressed = keyOf(target));
   element.onpointerup = ({ target }) => keyOf(target) && keyOf(target) === element.dataset.pressed && choose(keyOf(target));
   element.onkeydown = (event) => {
-    if ((event.key !== "Enter" && event.key !== " ") || !keyOf(event.target)) return;
+    if ((event.key !== "Enter" && event.key !== " ") || event.ctrlKey || event.metaKey || event.altKey || !keyOf(event.target)) return;
     event.preventDefault();
     choose(keyOf(event.target));
   };

@@ -44,7 +44,7 @@ export function divide(element, label, change = () => {}) {
   handle.addEventListener("keydown", (event) => {
     /** @type {Record<string, number>} */
     const steps = { ArrowLeft: -0.01, ArrowDown: -0.01, ArrowRight: 0.01, ArrowUp: 0.01, PageDown: -0.1, PageUp: 0.1, Home: -1, End: 1 };
-    if (!(event.key in steps)) return;
+    if (!(event.key in steps) || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     event.stopPropagation();
     moveByHand(place + steps[event.key]);
