@@ -59,7 +59,7 @@ drawn() {
             pixel "${name%% *}" "$kernel" "$@"
         fi
         then=${EPOCHREALTIME/./}
-    done < <("$@" "step=$step" "${words[@]}" 2>&1 || [ $? = 1 ] || echo "the program: failed, with status $?")
+    done < <("$@" "step=$step" "${words[@]}" 2>&1 || { status=$?; [ $status = 1 ] || echo "the program: failed, with status $status"; })
     if [ $lines = 0 ]; then
         echo "$machine: nothing was drawn"
         wrong=1

@@ -139,8 +139,18 @@ pub fn measure(
     let of_shadings: Vec<&Configuration<'_>> = ways.iter().filter(|way| matches!(way.kind, Kind::Shading(_))).collect();
     let splits = split(&of_shadings, frames, renderer, &spent(0.25), &|share| progress(Step::Split, share))?;
 
-    let claims =
-        if *with_claims { claims(renderer, &spent(0.25), &|share| progress(Step::Claims, share))? } else { Vec::new() };
+    let claims = if *with_claims {
+        // Claims are about shadings at their defaults, whatever was asked for here.
+        let kernel = renderer().kernel;
+        let plain = move || {
+            let mut renderer = Renderer::new();
+            renderer.kernel = kernel;
+            renderer
+        };
+        claims(&plain, &spent(0.25), &|share| progress(Step::Claims, share))?
+    } else {
+        Vec::new()
+    };
 
     let times = (0..ways.len()).map(|way| outcome.samples.of(way)).collect();
     let rows = Rows { ways: &ways, times, findings, outcome: &outcome, seed: *seed };

@@ -49,6 +49,7 @@ pub(super) fn draw_faces(size: (usize, usize), faces: &[Face], depth_tested: boo
                 Raster::new(frame).triangle(vertices, *interpolation);
             });
         }
+        panel.is_counted = true;
     }
     panel
 }

@@ -41,6 +41,8 @@ pub struct Panel {
     pixels: Vec<u8>,
     writes: Vec<u8>,
     marks: Vec<Option<Mark>>,
+    /// Whether faces were drawn one by one, so that `writes` counts all that drew a pixel.
+    pub(super) is_counted: bool,
 }
 
 /// How to compare a panel with what it should be.
@@ -57,7 +59,7 @@ pub(super) struct Measure {
 impl Panel {
     pub(super) fn new((width, height): (usize, usize)) -> Self {
         let all = width * height;
-        Self { width, height, pixels: vec![0; all], writes: vec![0; all], marks: vec![None; all] }
+        Self { width, height, pixels: vec![0; all], writes: vec![0; all], marks: vec![None; all], is_counted: false }
     }
 
     /// Number of columns.

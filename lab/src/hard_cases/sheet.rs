@@ -173,7 +173,7 @@ fn about_right(panel: &Panel) -> String {
     let drawn = panel.writes().iter().filter(|writes| **writes > 0).count();
     match (drawn, panel.writes().iter().max()) {
         (0, _) => "the engine: nothing drawn".to_string(),
-        (_, Some(1)) => format!("the engine: {}, each drawn once", pixels_in_words(drawn)),
+        (_, Some(1)) if panel.is_counted => format!("the engine: {}, each drawn once", pixels_in_words(drawn)),
         _ => format!("the engine: {}", pixels_in_words(drawn)),
     }
 }

@@ -12,7 +12,7 @@ pub(super) fn options(study: &Study) -> Markup {
     html! {
         @if !study.options.is_empty() { section {
             h2 { "The other choices" }
-            p { "One choice at a time, everything else at its default. Ratios are to the first of each group; errors are against exact Gouraud shading over unrounded vertices." }
+            p { "One choice at a time, everything else as above. Ratios are to the first of each group; errors are against exact Gouraud shading over unrounded vertices." }
             (table(study).html())
         } }
     }
