@@ -8,10 +8,10 @@
 //! | [`model`] | a model file as a scene: mesh, textures, light, palette, framing |
 //! | [`texture`] | textures from pictures: PNG, GIF, PCX, indexed Aseprite, and with the feature `images` JPEG, TGA, BMP and WebP |
 //! | [`palette_file`] | palettes in JASC, GIMP, Adobe, Lospec and raw VGA files |
-//! | [`auto_palette`] | a palette for a scene, from what is visible of it over a round |
+//! | [`auto_palette`] | a palette for a scene, from what is visible of it over one loop |
 //! | [`look`] | the looks of old machines: palette, dither, mapping and vertices under one name |
 //! | [`animation`] | animated GIF and PNG, and Y4M for other programs |
-//! | [`terminal`] | pictures as sixels, and by kitty's graphics protocol |
+//! | [`terminal`] | pictures as sixels, and in kitty's graphics protocol |
 //!
 //! [`SceneExt`] adds methods that read files to [`Scene`](mode13h::scene::Scene).
 //!

@@ -1,10 +1,10 @@
 //! Looks: the palette, dither, mapping and vertices of an old machine, under one name.
 //!
-//! A look is nothing but settings that can also be made one by one:
+//! A look is just a set of settings that can also be chosen one by one:
 //!
 //! | look | colours | dither | [`channels`](Settings::channels) |
 //! |---|---|---|---|
-//! | `ps1` | made for the scene, of 5 bits a channel | the `PlayStation`'s matrix | yes |
+//! | `ps1` | made for the scene, with 5 bits per channel | the `PlayStation`'s matrix | yes |
 //! | `vga` | the scene's own | the scene's own | the scene's own |
 //! | `gameboy` | four greens | ordered | yes |
 //! | `cga` | black, cyan, magenta and white | ordered | yes |
@@ -30,7 +30,7 @@ pub enum Look {
     Vga,
     /// Nintendo's Game Boy.
     GameBoy,
-    /// IBM's CGA in its mode of four colours, the bright ones.
+    /// IBM's CGA in its four-colour mode, at high intensity.
     Cga,
     /// Lexaloffle's PICO-8.
     Pico8,
@@ -106,8 +106,8 @@ impl Look {
         }
     }
 
-    /// The colours of a palette in the look's number of bits: for `ps1` 5 a channel, each rounded to the nearest of 32
-    /// levels.
+    /// The colours of a palette in the look's number of bits: for `ps1` 5 per channel, each rounded to the nearest of
+    /// 32 levels.
     #[must_use]
     pub fn rounded(self, palette: &Palette) -> Palette {
         if self != Look::Ps1 {
@@ -124,7 +124,7 @@ impl Look {
         rounded.clone().with_ramps(palette.ramps() as u16).unwrap_or(rounded)
     }
 
-    /// Gives a scene the look, except for settings of its own. A palette that has yet to be made becomes its
+    /// Gives a scene the look, except where it has settings of its own. A palette that has yet to be made becomes its
     /// [preference](Scene::auto_palette).
     pub(crate) fn lend(self, scene: &mut Scene, has_palette: bool) {
         scene.settings = scene.settings.or(&self.settings());

@@ -15,10 +15,10 @@ use crate::scene_file::{self, Loaded, SceneError};
 /// To read a scene file from a path, call [`scene_file::load`].
 pub trait SceneExt: Sized {
     /// Makes a scene that shows a model file with its materials and textures, centred, turning once per
-    /// [round](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
+    /// [loop](Scene::duration) as described at [`showing`](Scene::showing). A coloured model gets a palette made for
     /// it; a grey one is drawn in greys.
     ///
-    /// The model brings no light and no background. It is lit by a key light, a weaker fill from the other side and
+    /// The model has no light and no background. It is lit by a key light, a weaker fill from the other side and
     /// ambient light, which add up to full light: a face towards the eye shows 93 % of its Kd, or of its image, in
     /// which case a grey Kd is ignored. The background is the darkest grey, or otherwise a blue, that stands out from
     /// everything visible over a turn. y points up, except in an STL file and for a sheet that faces along z, where z

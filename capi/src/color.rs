@@ -11,7 +11,7 @@ use crate::target::{Bytes, check};
 const PALETTE: usize = 768;
 const TABLE: usize = 65_536;
 
-/// Reads a palette of 8 bits a channel.
+/// Reads a palette of 8 bits per channel.
 ///
 /// # Safety
 /// `from` is null or holds 768 bytes.
@@ -172,7 +172,7 @@ pub unsafe extern "C" fn m13_palette_cycle(to: *mut u8, first: u32, entries: u32
     }))
 }
 
-/// Converts 8 bits a channel to the 6 of the DAC.
+/// Converts 8 bits per channel to the 6 of the DAC.
 ///
 /// # Safety
 /// See the header.

@@ -162,7 +162,7 @@ fn floor(x: f64) -> i64 {
     if whole as f64 > x { whole - 1 } else { whole }
 }
 
-/// Converts 0 to 255 to 8.8.
+/// Converts a shade from 0 to 255 to 8.8.
 fn byte_of_float(x: f64) -> u16 {
     (x.clamp(0.0, 255.0) * 256.0 + 0.5) as u16
 }
@@ -439,7 +439,7 @@ impl Source {
     /// x, y, w, depth and shade of vertex `i`, and its address; `None` if one of them is not a number, or out of range.
     ///
     /// # Safety
-    /// It is below the number of vertices, and the mesh holds as many as it says.
+    /// `i` is below the number of vertices, and the mesh holds as many as it says.
     #[inline(always)]
     unsafe fn numbers<D: Door>(&self, i: u32, has_w: bool) -> Option<([D::Wide; 5], *const u8)> {
         let Mesh { vertices, stride, position, depth, shade, .. } = self.mesh;
@@ -476,7 +476,7 @@ impl Source {
     /// been stored in four.)
     ///
     /// # Safety
-    /// It is below the number of vertices, and the mesh holds as many as it says.
+    /// `i` is below the number of vertices, and the mesh holds as many as it says.
     #[inline(never)]
     pub(crate) unsafe fn corner<D: Door, K: Kept>(
         &self,
@@ -503,7 +503,7 @@ impl Source {
     /// or out of range.
     ///
     /// # Safety
-    /// It is below the number of vertices, and the mesh holds as many as it says.
+    /// `i` is below the number of vertices, and the mesh holds as many as it says.
     #[inline(always)]
     pub(crate) unsafe fn vertex<D: Door>(&self, i: u32, near: Option<D::Wide>) -> Option<Vertex> {
         // SAFETY: by the caller.
@@ -511,10 +511,10 @@ impl Source {
         D::vertex(numbers, near)
     }
 
-    /// Vertex `i`, for clipping; `None` if a number of it is invalid or out of range.
+    /// Vertex `i`, for clipping; `None` if one of its numbers is invalid or out of range.
     ///
     /// # Safety
-    /// It is below the number of vertices, and the mesh holds as many as it says.
+    /// `i` is below the number of vertices, and the mesh holds as many as it says.
     pub(crate) unsafe fn wide<D: Door, K: Kept>(&self, i: u32, near: Option<D::Wide>) -> Option<Wide<D::Wide, K>> {
         // SAFETY: by the caller.
         let ([x, y, w, depth, shade], vertex) = unsafe { self.numbers::<D>(i, near.is_some()) }?;

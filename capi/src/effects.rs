@@ -83,7 +83,7 @@ unsafe fn table<'a>(from: *const u8, target: &Checked<'_>) -> Outcome<Option<&'a
     Ok(Some(unsafe { &*from.cast::<[u8; TABLE]>() }))
 }
 
-/// A picture.
+/// Texels at an address, and the bytes that they take.
 ///
 /// # Safety
 /// `from` is null or holds all texels.

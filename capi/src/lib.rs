@@ -10,7 +10,7 @@
 //! | `draw` | triangles and lists of them |
 //! | `effects` | textures, light by a table, fog and translucency |
 //! | `color` | palettes, tables of 64 KiB, conversion for the screen |
-//! | `memory` | the caller's memory as an allocator, and the end of a panic |
+//! | `memory` | an allocator in the caller's memory, and the panic handler |
 //!
 //! Arguments are checked before anything is written. The caller's data is read by value, unaligned, and never through a
 //! reference, so it may overlap with anything except the memory that is drawn into; that is rejected.

@@ -167,7 +167,6 @@ pub unsafe extern "C" fn m13_target_init(
 /// # Safety
 /// See the header.
 #[unsafe(no_mangle)]
-#[expect(clippy::too_many_arguments, reason = "those of a whole frame, and two rows")]
 pub unsafe extern "C" fn m13_target_init_band(
     target: *mut Target,
     pixels: *mut c_void,

@@ -1,4 +1,4 @@
-//! A row's intensity and its slope as a chart: in an SVG file, or in characters.
+//! A row's intensity and its slope as a chart: in an SVG file, or as text.
 
 use std::error::Error;
 use std::ops::Range;
@@ -38,7 +38,7 @@ fn draw(title: &str, row: &Row, area: DrawingArea<SVGBackend<'_>, Shift>) -> Res
         CURVES.iter().map(|(_, _, of)| row.columns.iter().map(of).collect()).collect();
     let slopes: Vec<Vec<Option<f64>>> = CURVES.iter().map(|(_, _, of)| row.slope(of)).collect();
     panel(&above, "intensity, shades of 255", &columns, &intensity, false)?;
-    panel(&below, "slope, shades a pixel (cut off at steps)", &columns, &slopes, true)?;
+    panel(&below, "slope, shades per pixel (cut off at steps)", &columns, &slopes, true)?;
     Ok(area.present()?)
 }
 
@@ -115,8 +115,8 @@ fn shown(row: &Row) -> Range<usize> {
     }
 }
 
-/// Range from the least to the greatest value, with some margin; 0 to 1 if there is none. Slopes are huge where the
-/// intensity itself has a step, so theirs covers the middle eight tenths, and as much again on both sides.
+/// Range from the smallest to the largest value, with some margin; 0 to 1 if there is none. Slopes are huge where the
+/// intensity itself has a step, so theirs covers the middle 80 % of the values, and as much again on both sides.
 fn span(curves: &[Vec<Option<f64>>], columns: &Range<usize>, are_slopes: bool) -> (f64, f64) {
     let mut values: Vec<f64> = curves.iter().flat_map(|curve| &curve[columns.clone()]).copied().flatten().collect();
     values.sort_by(f64::total_cmp);
@@ -143,8 +143,8 @@ fn runs(values: &[Option<f64>], columns: &Range<usize>) -> Vec<Vec<(f64, f64)>> 
 const ACROSS: usize = 90;
 const LINES: [usize; 2] = [15, 9];
 
-/// Draws a row's chart in characters. Above, `#` is the drawn intensity, and `o` is lit where that differs; below, `=`
-/// is the slope of exact gouraud and `o` that of lit.
+/// Draws a row's chart as text. Above, `#` is the drawn intensity, and `o` is `lit` where that differs; below, `=` is
+/// the slope of exact `gouraud` and `o` that of `lit`.
 pub(crate) fn text(title: &str, row: &Row) -> String {
     let mut text = format!("{title}\n");
     let columns = shown(row);
@@ -154,7 +154,7 @@ pub(crate) fn text(title: &str, row: &Row) -> String {
     let of = |of: fn(&Column) -> Option<f64>| -> Vec<Option<f64>> { row.columns.iter().map(of).collect() };
     text += "\nintensity in shades of 255: # drawn, o lit at every pixel\n";
     text += &plot(&columns, [('o', of(|c| c.lit)), ('#', of(|c| c.drawn))], LINES[0], false);
-    text += "\nslope in shades a pixel, cut off at steps: = linear between the corners, o lit at every pixel\n";
+    text += "\nslope in shades per pixel, cut off at steps: = linear between the corners, o lit at every pixel\n";
     text += &plot(&columns, [('o', row.slope(|c| c.lit)), ('=', row.slope(|c| c.gouraud))], LINES[1], true);
     text + &bands(row)
 }
@@ -186,7 +186,7 @@ fn plot(columns: &Range<usize>, curves: [(char, Vec<Option<f64>>); 2], lines: us
     text + &format!("{} +{}\n{}{}{right:>gap$}\n", " ".repeat(8), "-".repeat(across), " ".repeat(10), columns.start)
 }
 
-/// Describes the greatest jump in the slope of linear shades, between two faces on both of which it is known.
+/// Describes the largest jumps in the slope of linear shades from one face to the next.
 fn bands(row: &Row) -> String {
     let columns = &row.columns;
     let slope = |a: usize, b: usize| {
@@ -205,7 +205,7 @@ fn bands(row: &Row) -> String {
     }
     let mut text = String::from("\nMach bands: the eye sees a line where the slope jumps, most clearly at column\n");
     for (x, before, after) in jumps {
-        text += &format!("{x:>10}  from {before:+.2} to {after:+.2} shades a pixel\n");
+        text += &format!("{x:>10}  from {before:+.2} to {after:+.2} shades per pixel\n");
     }
     text
 }

@@ -11,10 +11,10 @@ use mode13h::vga::Vga;
 
 use crate::failure::Failure;
 
-/// The fewest and the most differences that a price is computed from.
+/// The minimum and maximum number of differences that a price is computed from.
 const ROUNDS: (usize, usize) = (15, 1_001);
 
-/// Times frames of a moving scene, which alternate between two.
+/// Times two frames of a moving scene, drawn alternately.
 pub(crate) struct EffectCost<'a, Make: Fn() -> Renderer> {
     /// Makes renderers that draw as the user asked.
     pub(crate) renderer: Make,

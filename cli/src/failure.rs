@@ -12,7 +12,7 @@ use mode13h_assets::texture::LoadErrorKind;
 use mode13h_lab::cost::CostError;
 use mode13h_lab::explain::ExplainError;
 
-/// The exit statuses, as `--help` says them.
+/// The exit statuses, as `--help` lists them.
 pub(crate) const EXIT_STATUS: &str = "\
 Exit status:
   0    Done
@@ -43,7 +43,7 @@ impl Failure {
         Failure { line: on_one_line(&reason.to_string()), status }
     }
 
-    /// Another line with this status.
+    /// A failure with the same status and another message.
     pub(crate) fn saying(&self, reason: impl fmt::Display) -> Failure {
         Failure::new(&reason, self.status)
     }
@@ -114,7 +114,7 @@ fn is_unreadable(kind: &ModelFileErrorKind) -> bool {
     matches!(kind, ModelFileErrorKind::Read(_) | ModelFileErrorKind::Directory)
 }
 
-/// A text without line ends and other control characters. File names and the contents of files may have them, but an
+/// A text without line breaks and other control characters. File names and the contents of files may have them, but an
 /// error is one line, and control characters from a file must not reach a terminal.
 pub(crate) fn on_one_line(text: &str) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()

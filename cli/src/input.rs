@@ -209,13 +209,13 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
 /// No scene is longer. Longer input is not read to its end, and is rejected as too long.
 const LONGEST_SCENE: u64 = 1 << 25;
 
-/// The model of a stream. Warnings go to standard error, a line each.
+/// The model of a stream. Warnings go to standard error, one per line.
 fn model_of(stream: Stream, options: &Options) -> Result<Model, Failure> {
     let loaded = model_file::parse(stream.bytes, &stream.path, model_file::read_named, options)?;
     Ok(of_file(name_of(stream.path.as_os_str()), loaded))
 }
 
-/// The model of a file that was read. Warnings go to standard error, a line each.
+/// The model of a file that was read. Warnings go to standard error, one per line.
 fn of_file(name: String, loaded: model_file::Loaded) -> Model {
     let model_file::Loaded { mesh, textures, up, warnings, files, lights, camera, rig, .. } = loaded;
     files.iter().for_each(|file| read_files::add(file));
@@ -228,7 +228,7 @@ fn warn(warning: impl Display) {
     output::note(on_one_line(&warning.to_string()));
 }
 
-/// The model in a file or the shape with a name. Warnings go to standard error, a line each.
+/// The model in a file or the shape with a name. Warnings go to standard error, one per line.
 pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> {
     model_or(words, options, &format!("models are {} files", Format::extensions()), &|| {
         format!("no such file or shape; shapes are {}", shapes::NAMES.join(", "))
@@ -328,7 +328,7 @@ pub(crate) fn palette_extensions() -> String {
     extensions.join(", ")
 }
 
-/// The name of the palette that is made for what is seen.
+/// The name of the palette that is made for what is visible.
 pub(crate) const AUTO: &str = "auto";
 
 /// The palette with a name or in a file, and what to call it; or the one that is made for what is seen.

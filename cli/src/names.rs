@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 /// The names of a series of files.
 pub(crate) struct Names {
-    /// Text before and after the number, and the number's least count of digits; `None` if the name has no number.
+    /// Text before and after the number, and its minimum number of digits; `None` if the name has no number.
     numbered: Option<(String, usize, String)>,
     out: PathBuf,
 }
@@ -35,7 +35,7 @@ impl Names {
     }
 }
 
-/// Splits a name at `%d` or `%04d` (any one digit): the text before it, the least count of digits, the text after it.
+/// Splits a name at `%d` or `%04d` (any digit): the text before it, the minimum number of digits, the text after it.
 pub(crate) fn number_in(name: &str) -> Option<(String, usize, String)> {
     name.match_indices('%').find_map(|(at, _)| {
         let behind = &name[at + 1..];

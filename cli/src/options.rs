@@ -455,8 +455,8 @@ fn long_help_on_looks() -> String {
 fn long_help_on_arithmetic() -> String {
     let names = VertexPath::ALL.map(VertexPath::name).join(", ");
     format!(
-        "Compute vertices in this arithmetic: {names}. `fixed` is 16.16, for a 386 without a coprocessor; it knows no \
-         error budget, and not every shading or effect.\n\n\
+        "Compute vertices in this arithmetic: {names}. `fixed` is 16.16, for a 386 without a coprocessor; it lacks \
+         error budgets and some shadings and effects.\n\n\
          [default: {}]",
         VertexPath::default()
     )

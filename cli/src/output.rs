@@ -59,8 +59,8 @@ pub(crate) fn remark(line: impl Display) {
     }
 }
 
-/// Makes Ctrl-C and other termination signals wait for the files being written: each is then whole under its
-/// name, or removed if it takes long, and no temporary file is left behind.
+/// Makes Ctrl-C and other termination signals wait for the files being written. Each is completed, or removed if it
+/// would take long, and no temporary file is left behind.
 pub(crate) fn finish_files_when_interrupted() {
     let end = || {
         INTERRUPTED.store(true, Ordering::Relaxed);
@@ -77,7 +77,7 @@ pub(crate) fn finish_files_when_interrupted() {
 }
 
 /// Writes a file, for all commands. Never overwrites a file that this command has read or written, whatever name leads
-/// to it. The file is whole even if the program is interrupted meanwhile.
+/// to it. The file is complete even if the program is interrupted meanwhile.
 pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Result<T, E>) -> Result<T, Failure> {
     read_files::spare(path)?;
     let _writing = (!is_stream(path)).then(|| WRITING.read().unwrap_or_else(PoisonError::into_inner));
@@ -86,8 +86,8 @@ pub(crate) fn file<T, E: Into<Failure>>(path: &Path, write: impl FnOnce() -> Res
     Ok(written)
 }
 
-/// Returns whether this is a device or a pipe. Nothing waits for one when the program is interrupted: it has no whole to
-/// be kept, and a pipe may never be read.
+/// Returns whether this is a device or a pipe. An interrupted program does not wait for these: there is no file to keep
+/// complete, and a pipe may never be read.
 fn is_stream(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir())
 }
@@ -98,14 +98,14 @@ pub(crate) fn bytes(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 }
 
 /// Writes a file that takes long, or a stream if there is no path, under the rule of [`file`]. `write` checks
-/// [`is_interrupted`] all the time, and gives the file up if it is set: in that case this never returns, and the
+/// [`is_interrupted`] regularly, and abandons the file if it is set: in that case this never returns, and the
 /// program ends as interrupted.
 pub(crate) fn long_file<T>(path: Option<&Path>, write: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
     path.map_or(Ok(()), read_files::spare)?;
     if path.is_some_and(|path| !is_stream(path)) { to_its_end(write) } else { unless_interrupted(write()) }
 }
 
-/// Does what the program must not leave half done when it is told to end. `work` checks [`is_interrupted`] all the time,
+/// Does what the program must not leave half done when it is told to end. `work` checks [`is_interrupted`] regularly,
 /// and undoes what it did if it is set: in that case this never returns, and the program ends as interrupted.
 pub(crate) fn to_its_end<T>(work: impl FnOnce() -> T) -> T {
     let working = WRITING_LONG.lock().unwrap_or_else(PoisonError::into_inner);
@@ -161,12 +161,12 @@ pub(crate) fn counted(number: u64, thing: &str) -> String {
     format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Prints a value as JSON, with a line end.
+/// Prints a value as JSON, followed by a newline.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(&json(value)?)
 }
 
-/// A value as JSON, with a line end.
+/// A value as JSON, followed by a newline.
 pub(crate) fn json(value: &impl Serialize) -> Result<String, Failure> {
     Ok(serde_json::to_string_pretty(value)? + "\n")
 }
@@ -188,7 +188,7 @@ pub(crate) fn refuse_overwriting(path: &Path, force: bool) -> Result<(), Failure
     Err(Failure::work(format!("{}: already exists; --force overwrites it, -o writes elsewhere", path.display())))
 }
 
-/// Returns whether a name ends in an extension, in any case of its letters.
+/// Returns whether a name ends in an extension, in upper or lower case.
 pub(crate) fn has_extension(path: &Path, wanted: &str) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case(wanted))
 }

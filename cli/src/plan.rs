@@ -99,7 +99,7 @@ fn prices<Make: Fn() -> Renderer>(meter: &EffectCost<'_, Make>, rows: &[Row]) ->
 struct Json<'a> {
     schema: u32,
     input: &'a str,
-    /// The least near distance that depths need, if the camera's is smaller.
+    /// The smallest near distance at which depths are precise enough, if the camera's is smaller still.
     near_needed: Option<f32>,
     objects: Vec<JsonObject<'a>>,
 }
@@ -175,13 +175,13 @@ impl Head<'_> {
         if let Some(near) = plan.near_needed() {
             paragraph(&near_warning(near));
         }
-        let each = if objects > 1 { format!(", {:.0} ns an object", planning / objects as f64) } else { String::new() };
+        let each = if objects > 1 { format!(", {:.0} ns/object", planning / objects as f64) } else { String::new() };
         paragraph(&format!("making the plan takes {planning:.0} ns{each} (median)"));
         if let Some(frame) = frame {
             paragraph(&format!("drawing the frame takes {frame:.0} ns, redrawn even if nothing changed"));
             paragraph(
                 "ns: how much longer the frame takes with the effect on this object alone; in brackets, what an effect \
-                 that is off would cost; 0 is lost in the noise. Hidden surfaces and palette animation are measured \
+                 that is off would cost; 0: lost in the noise. Hidden surfaces and palette animation are measured \
                  for all objects together",
             );
         }

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 /// The files so far, the names that led to them, and whether they were read or written.
 static USED: Mutex<Vec<(Identity, PathBuf, &str)>> = Mutex::new(Vec::new());
 
-/// Device and number of a file, which are the same through links of both kinds.
+/// Device and inode number of a file, which are the same through hard and symbolic links.
 #[cfg(unix)]
 type Identity = (u64, u64);
 /// The path without links.

@@ -47,8 +47,8 @@ pub(crate) struct Options {
     out: Option<PathBuf>,
     /// Show the picture in the terminal: sixel or kitty
     ///
-    /// It is written to standard output as DEC sixels or in kitty's graphics protocol. Sixels round colours to whole percents;
-    /// kitty's are exact.
+    /// It is written to standard output as DEC sixels or in kitty's graphics protocol. Sixels round colours to whole
+    /// percentages; kitty's are exact.
     ///
     /// [default: with -o - on a terminal, kitty if the environment names kitty or Ghostty, or else sixel]
     #[arg(
@@ -258,7 +258,7 @@ fn saying_which(failure: Failure, names: &Names, mut written: Vec<u32>) -> Failu
     failure.saying(format!("{failure}; written before that: {}", runs.join(", ")))
 }
 
-/// Lists the files that were written and, with --stats, the counts of drawing.
+/// Lists the files that were written and, with --stats, the statistics of each frame.
 fn as_json(options: &Options, out: &Out, film: Option<film::Figures>, mut drawn: Vec<Drawn>) -> Value {
     drawn.sort_by_key(|(number, ..)| *number);
     let mut json = json!({

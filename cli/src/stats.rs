@@ -1,4 +1,4 @@
-//! Counts of drawing a frame, for programs.
+//! The statistics of a frame as JSON, for other programs.
 
 use mode13h::render::Stats;
 use serde_json::{Map, Value, json};

@@ -27,7 +27,7 @@ impl Switch {
     pub(crate) const KEYS: [(Key, Switch); 4] =
         [(Key::L, Switch::Lights), (Key::O, Switch::Fog), (Key::T, Switch::Texture), (Key::D, Switch::Dither)];
 
-    /// The most states that a switch has: dither is off, or in one of the patterns.
+    /// The maximum number of states of a switch: dither is off, or in one of the patterns.
     pub(crate) const MAX_STATES: usize = 1 + DitherPattern::ALL.len();
 
     fn effects(self) -> &'static [Effect] {

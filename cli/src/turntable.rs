@@ -34,7 +34,7 @@ impl From<Palette> for Colors {
 /// How the user has turned and enlarged the picture, in addition to the motion by the clock.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub(crate) struct Pose {
-    /// The rotation about its own upward axis, counter-clockwise as seen from above, in radians.
+    /// The rotation of what is shown about its upward axis, counter-clockwise as seen from above, in radians.
     pub(crate) turn: f64,
     /// The tilt of its upper end towards the camera, in radians.
     pub(crate) tilt: f64,
@@ -67,7 +67,7 @@ pub(crate) struct Turntable {
     pub(crate) turns: bool,
     /// True if it is drawn by the 16.16 path, so that an automatic palette is for what that draws.
     pub(crate) in_integers: bool,
-    /// The camera's own place.
+    /// The camera, without the effect of the user's pose.
     camera: Camera,
     /// Enlargement, independent of the pose.
     pub(crate) zoom: f64,
@@ -100,7 +100,7 @@ enum Shown {
     Scene,
 }
 
-/// The longest round, in seconds, as in a scene file: an animation has frames for all of it.
+/// The longest loop, in seconds, as in a scene file: an animation has frames for all of it.
 const MAX_DURATION: f64 = 3600.0;
 
 impl Turntable {
@@ -148,7 +148,7 @@ impl Turntable {
         Ok(stage)
     }
 
-    /// Makes the only object play a clip of a rig; a round takes as long as the clip.
+    /// Makes the only object play a clip of a rig; a loop takes as long as the clip.
     fn play(&mut self, moving: Option<(Rig, usize)>, lights: bool, camera: bool) -> Option<Playback> {
         let (rig, clip) = moving?;
         let playback = Playback::new(rig, clip, &self.scene, *self.scene.object_ids().first()?)?;
@@ -200,7 +200,7 @@ impl Turntable {
     }
 
     /// Time and pose for `--turn`. A model is turned. In a scene or a model that moves by itself, time passes instead,
-    /// with 360 degrees for one round; around a scene that does not move, the camera circles.
+    /// with 360 degrees for one loop; around a scene that does not move, the camera circles.
     pub(crate) fn turned(&self, seconds: f64, degrees: f64) -> (f64, Pose) {
         match self.shown {
             Shown::Model if self.playbacks.is_empty() => {}
@@ -340,7 +340,7 @@ impl Turntable {
         Ok(())
     }
 
-    /// The palette made for what is visible over a round, computed once.
+    /// The palette made for what is visible over a loop, computed once.
     pub(crate) fn automatic(&mut self) -> Result<AutomaticPalette, RenderError> {
         if let Some(made) = &self.automatic {
             return Ok(made.clone());
@@ -352,7 +352,7 @@ impl Turntable {
         Ok(self.automatic.insert(made).clone())
     }
 
-    /// Makes a palette for what is visible over a round.
+    /// Makes a palette for what is visible over a loop.
     fn made(&self) -> Result<AutomaticPalette, RenderError> {
         let mut scene = self.at_first();
         let camera = scene.camera;
@@ -380,7 +380,7 @@ impl Turntable {
         })
     }
 
-    /// The scene at the beginning of a round, in its own palette.
+    /// The scene at the beginning of a loop, in its own palette.
     fn at_first(&self) -> Scene {
         let mut stage = Turntable { frames_still: false, ..self.clone() };
         stage.show(0.0, Pose::FIRST);

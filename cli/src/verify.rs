@@ -216,7 +216,7 @@ fn as_text(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture
     let cases: usize = by_kernel.iter().map(|drawn| drawn.count).sum();
     let wrong: usize = by_kernel.iter().map(|drawn| drawn.wrong.len()).sum();
     let count = by_kernel.first().map_or(0, |drawn| drawn.count);
-    let _ = writeln!(text, "frames: {count} by each kernel, {cases} in all, {}", failed(wrong));
+    let _ = writeln!(text, "frames: {count} with each kernel, {cases} in all, {}", failed(wrong));
     for ByKernel { kernel, wrong, .. } in by_kernel {
         for one in wrong.iter().take(MOST_NAMED) {
             let _ = writeln!(text, "    {kernel}: {one}");
@@ -234,7 +234,7 @@ fn as_text(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture
     text
 }
 
-/// The most frames of a kernel that are named in text, as one fault shows in many.
+/// The maximum number of frames named in text for each kernel, since one fault shows in many.
 const MOST_NAMED: usize = 8;
 
 fn as_json(options: &Options, loops: &[Outcome], by_kernel: &[ByKernel], picture: Option<&Path>) -> String {

@@ -41,7 +41,7 @@ pub(crate) struct ConeBeam {
     pub(crate) inverse_width: f64,
 }
 
-/// The least difference between a cone's two cosines.
+/// The minimum difference between a cone's two cosines.
 const LEAST_WIDTH: f64 = 1.0 / 65_536.0;
 
 impl ConeBeam {

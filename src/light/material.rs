@@ -142,7 +142,7 @@ impl Material {
 
     /// The colours of the material and of its highlight, on three channels. If the material has none, they are those of
     /// the surface that it was made from: Kd and Ks divided by their luminance, which the material's `diffuse` and
-    /// `specular` already contain. A texture brings its own colours.
+    /// `specular` already contain. A texture has its own colours.
     #[must_use]
     pub fn own_colors(&self, surface: &Surface) -> ([f32; 3], [f32; 3]) {
         let or_else = |own: [f32; 3], of: [f32; 3]| if own == [1.0; 3] { hue(of) } else { own };

@@ -22,7 +22,7 @@ use super::wide::{Wide, widen};
 /// The number of rays along each side of the box.
 const RAYS: u32 = 64;
 
-/// The least length along a ray at which a negative region makes a mesh partly inverted, as a fraction of the longest
+/// The minimum length along a ray at which a negative region makes a mesh partly inverted, as a fraction of the longest
 /// side of the box. Scans have folds, a few faces thin. Culling the far side of a fold leaves no hole: another face
 /// lies a fold's width behind it.
 const THINNEST: f64 = 1.0 / 32.0;

@@ -2,18 +2,18 @@
 //!
 //! | item | what |
 //! |---|---|
-//! | [`Rgb`] | one colour; 8 bits a channel, and the DAC's 6 |
+//! | [`Rgb`] | one colour; 8 bits per channel, and the DAC's 6 |
 //! | [`Ramp`] | consecutive entries from dark to light, which shades cannot leave |
 //! | [`Palette`] | 256 colours, with the ramps that they hold |
 //! | [`gradient`] | ramps from key colours |
 //! | [`cube`] | the 6 × 6 × 6 colour cube with greys, and its nearest entry without a search |
 //! | [`BIOS`] | the initial colours of mode 13h |
 //! | [`builtin`] | the built-in palettes, by name |
-//! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits a channel (`alloc`) |
+//! | [`NearestColors`], [`InverseColormap`] | the nearest entry of any palette: exactly, and by a table of 5 bits per channel (`alloc`) |
 //! | [`Lut64K`] | 64 KiB tables from two bytes to a third: shaded texels, fog, glass (`alloc`) |
 //!
-//! A palette has 8 bits a channel, the card 6. A palette stores the 8 bits it was given, so a file is written as it was
-//! read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
+//! A palette has 8 bits per channel, the card 6. A palette stores the 8 bits it was given, so a file is written as it
+//! was read. [`Vga::set_palette`](crate::vga::Vga::set_palette) rounds down to 6, and the scan-out expands to 8 again.
 //! [`Palette::on_dac`] gives the result.
 
 mod bios;

@@ -13,8 +13,8 @@ use crate::view::{ObjectView, ScreenBounds};
 /// The largest error of affine mapping that is tolerated, in texels.
 const AFFINE_TOLERANCE: f64 = 0.5;
 
-/// An object with more texels per pixel than this, seen head on, gets mipmaps. It is half of √2, up
-/// to which level 0 is used: a face tilted by 60° has twice as many texels per pixel.
+/// An object with more texels per pixel than this, seen head on, gets mipmaps. Level 0 is used up to √2
+/// texels per pixel, and this is half of that, because a face tilted by 60° has twice as many.
 const MIN_TEXELS: f64 = core::f64::consts::FRAC_1_SQRT_2;
 
 /// The inputs to the decisions.

@@ -248,7 +248,7 @@ impl Reason {
             Self::AffineError { texels } => {
                 format!("linear mapping would be off by up to {:.2} texels", libm::ceil(texels * 100.0) / 100.0)
             }
-            Self::NoTexture => "nothing needs perspective".to_string(),
+            Self::NoTexture => "nothing needs perspective correction".to_string(),
             Self::NoImage => "no material has a texture".to_string(),
             Self::TexelsToPixel { texels } => {
                 format!("up to {:.2} texels to a pixel, seen straight on", libm::ceil(texels * 100.0) / 100.0)

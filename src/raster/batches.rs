@@ -310,7 +310,7 @@ pub(super) fn draw_triangles<S: Lanes8, P: Shades8, const DEPTHS: bool>(
     DrawStats::of_spans(list.counts(), has_depths)
 }
 
-/// The most pieces of a row of a large triangle.
+/// The maximum number of pieces of a row of a large triangle.
 #[inline(always)]
 fn most_pieces(triangles: &Triangles<'_>, pick: Pick) -> usize {
     let [a, b, c] = three(triangles.corners(pick), |i| triangles.columns.at[i].x());
@@ -373,7 +373,7 @@ mod tests {
 
     const SIDE: u32 = 150;
 
-    /// A corner, most of them close together, in 1/256 pixel, and its depth.
+    /// A corner in 1/256 pixel, usually close to the others, and its depth.
     fn corner() -> impl Strategy<Value = (i32, i32, u32)> {
         let at = || prop_oneof![6 => 2_000..6_000, 2 => -3_000..42_000, 1 => (0..150).prop_map(|i| i * 256 + 128)];
         (at(), at(), prop_oneof![0..=1_u32 << 30, any::<u32>()])

@@ -136,7 +136,7 @@ pub(crate) enum Value {
 
 #[cfg(feature = "alloc")]
 impl Value {
-    /// The most values that one pipeline needs.
+    /// The maximum number of values that one pipeline needs.
     pub(crate) const MAX_COUNT: usize = 4;
 
     /// Index among the values of a pipeline, which has either channels or a table of normals.

@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::fixed::{I24F8, U8F8};
 
-/// The most columns or rows of a frame.
+/// The maximum number of columns or rows of a frame.
 pub(super) const MAX_SIDE: u32 = 4096;
 
 /// A frame, depth buffer or vertex that the raster rejects.

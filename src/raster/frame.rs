@@ -67,7 +67,7 @@ pub struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
-    /// The most columns or rows.
+    /// The maximum number of columns or rows.
     pub const MAX_SIDE: u32 = error::MAX_SIDE;
 
     /// A whole frame of `width × height` pixels whose rows lie `pitch` bytes apart.

@@ -11,11 +11,11 @@ pub(super) const MAX_COLUMNS: i32 = 64;
 pub(super) const MAX_ROWS: i32 = 16;
 /// The greatest width of a large triangle's box, in 1/256 pixel.
 pub(super) const MAX_WIDTH: i32 = 1_024 * 256;
-/// The most reseeded pieces of a row.
+/// The maximum number of reseeded pieces of a row.
 pub(super) const MAX_PIECES: usize = MAX_WIDTH as usize / 256 / RESEED as usize;
 /// The greatest height of such a box.
 pub(super) const MAX_HEIGHT: i32 = 4_096 * 256;
-/// The most squares of 4 × 4 pixels in the box, sides rounded up: 2³⁴ units.
+/// The maximum number of squares of 4 × 4 pixels in the box, sides rounded up: 2³⁴ units.
 pub(super) const MAX_AREA_4X4: i32 = 1 << 14;
 
 /// The class of a triangle, by its size and position.
@@ -37,7 +37,7 @@ pub(crate) enum SizeClass {
 pub(crate) struct Pick(pub(crate) u32);
 
 impl Pick {
-    /// The most triangles in a list.
+    /// The maximum number of triangles in a list.
     #[cfg(feature = "alloc")]
     pub(crate) const MAX_COUNT: usize = 1 << 28;
 

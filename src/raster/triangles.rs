@@ -14,10 +14,10 @@ use crate::fixed::{I24F8, IS_COMPACT, U8F8};
 use crate::lanes::{LANES, three};
 use crate::simd::Level;
 
-/// The most triangles that are culled and drawn together.
+/// The maximum number of triangles that are culled and drawn together.
 const CAPACITY: usize = 2 * CHUNK;
 
-/// The most triangles of a short list. Clearing memory for a long one takes as long as a dozen small triangles.
+/// The maximum length of a short list. Clearing memory for a long one takes as long as a dozen small triangles.
 const SHORT: usize = 2 * LANES;
 
 /// One value of the corners of `N` triangles: first corners, second corners, third corners. Eight triangles are loaded
@@ -182,7 +182,7 @@ impl<const N: usize> Default for VertexTable<N> {
     }
 }
 
-/// A corner's shade. A flat triangle has equal corners: the byte nearest to a whole shade is that shade.
+/// A corner's shade. In a flat triangle all corners have its byte as their shade, which rounds to that byte.
 #[inline]
 fn corner_shade(vertex: &Vertex, interpolation: Interpolation) -> U8F8 {
     match interpolation {

@@ -68,7 +68,7 @@ impl Edge {
         Self { y: a.y, x, step_x: dx / rows, shade: a.shade, step_shade: (b.shade - a.shade) / rows }
     }
 
-    /// The edge at row `y` of its rows: its values after that many additions.
+    /// The edge at row `y`: its values after one addition for each row before it.
     #[inline]
     fn at(&self, y: i32) -> Self {
         // A truncated quotient times at most its divisor is at most the dividend.

@@ -33,7 +33,7 @@ use crate::view::{ObjectView, View};
 struct Parameters {
     view: ObjectView,
     ambient: f32,
-    /// The number of the palette's ramps, on which the materials' ramps depend.
+    /// How many ramps the palette has, since the materials' ramps depend on that.
     ramps: Option<usize>,
     fog: Option<Fog>,
     accuracy: Accuracy,

@@ -1,4 +1,4 @@
-//! Counts of drawing a frame.
+//! Statistics of a frame: counts of the work that drawing it took.
 
 use core::iter::Flatten;
 use core::ops::Index;

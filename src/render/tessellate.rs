@@ -26,7 +26,7 @@ use crate::light::Lights;
 use crate::mesh::normals::unit;
 use crate::mesh::wide::{dot, sub, widen};
 
-/// The most halvings of an edge: 64 pieces.
+/// How often an edge may be halved: into 64 pieces at most.
 const DEPTH: usize = 6;
 
 /// Splitting ends at this number of triangles.

@@ -25,7 +25,7 @@ use crate::settings::Shading;
 /// The farthest coordinate.
 const REACH: f64 = 32_767.0;
 
-/// The nearest near plane, in units of the scaled scene: there W is still accurate to one part in 8,192.
+/// The smallest near distance, in units of the scaled scene: there W is still accurate to one part in 8,192.
 const NEAREST: f64 = 1.0 / 16.0;
 
 /// A mesh in 16.16. It holds the mesh that it was converted from, so that no other can be at the same address.

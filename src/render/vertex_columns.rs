@@ -70,10 +70,10 @@ pub(super) struct AddedTriangles {
 impl AddedTriangles {
     /// The number of added triangles at which the pending ones are drawn. The parts of one more face may exceed it.
     pub(super) const MAX_PENDING: usize = 64;
-    /// The most corners and triangles that one face adds, see `raster::clip`.
+    /// The maximum number of corners, and of triangles, that one face adds: see `raster::clip`.
     pub(super) const MAX_OF_FACE: usize = 8;
 
-    /// Allocates memory for the most triangles that may be pending.
+    /// Allocates memory for as many triangles as may be pending.
     pub(super) fn make_room(&mut self) {
         let most = 3 * Self::MAX_PENDING + Self::MAX_OF_FACE;
         let (vertices, triangles) = (self.vertices.at.len(), self.indices.len());

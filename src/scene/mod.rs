@@ -76,7 +76,7 @@ pub struct Scene {
     pub auto_palette: bool,
     /// The motions; [`set_time`](Self::set_time) moves objects, lights and camera accordingly.
     pub motions: Vec<Motion>,
-    /// The duration of a round, in seconds; above 0. An animation of that length repeats without a seam if every motion's
+    /// The duration of one loop, in seconds; above 0. An animation of that length repeats seamlessly if every motion's
     /// period divides it.
     pub duration: f64,
     /// The time of a still picture, in seconds: the moment that shows the scene's subject best.
@@ -96,7 +96,7 @@ impl Scene {
     /// The angle by which the top of a [shown](Self::showing) object is tilted towards the eye.
     pub const TILT: Angle = Angle::from_radians(0.35);
 
-    /// Makes an empty scene: ambient light of intensity 1 and no other, a grey palette, entry 0 as background, a round
+    /// Makes an empty scene: ambient light of intensity 1 and no other, a grey palette, entry 0 as background, a loop
     /// of four seconds, and a camera that looks along −z at the unit sphere around the origin.
     #[must_use]
     pub fn new() -> Self {
@@ -135,7 +135,7 @@ impl Scene {
     /// turning about its centre, lit by one sun from the upper right behind the eye.
     ///
     /// The object is tilted a little towards the eye, so that a flat one is not a line, and turns once per
-    /// [round](Self::duration), driven by [`set_time`](Self::set_time). Over the whole turn it fills nine tenths of the
+    /// [loop](Self::duration), driven by [`set_time`](Self::set_time). Over the whole turn it fills nine tenths of the
     /// picture's width or height ([`Camera::framing_turn`]).
     ///
     /// ```

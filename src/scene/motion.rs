@@ -21,8 +21,8 @@ pub enum Motion {
         object: ObjectId,
         /// Its angles about x, y and z at time 0.
         start: [Angle; 3],
-        /// Turns per second about x, y and z. Whole turns over a round make an animation seamless. A scene file's `spin`
-        /// is turns in a round: it is divided by [`Scene::duration`](super::Scene::duration).
+        /// Turns per second about x, y and z. Whole turns per loop make an animation seamless. A scene file's `spin`
+        /// is in turns per loop: it is divided by [`Scene::duration`](super::Scene::duration).
         turns: [f64; 3],
     },
     /// Something moves along a path.

@@ -103,7 +103,7 @@ impl SpanList {
     #[cfg(feature = "alloc")]
     pub(crate) const CAPACITY: usize = CAPACITY;
 
-    /// A list for no pixels.
+    /// An empty list over an empty target.
     pub(crate) const NONE: Self = {
         const NUMBERS: Numbers = [0; CAPACITY + LANES];
         const DEPTHS: Depths = [0; CAPACITY + LANES];
@@ -156,7 +156,7 @@ impl SpanList {
         self.count + spans <= CAPACITY
     }
 
-    /// The mask of those of these eight spans that have a length and lie inside.
+    /// The mask of the spans, out of eight, that are not empty and lie inside.
     #[inline(always)]
     fn inside<S: Lanes8>(&self, s: S, spans: &Spans8<S>, has_depths: bool) -> S::Mask {
         // Each is negative if a span has no length, begins before the pixels, ends beyond 2³¹, or ends beyond the

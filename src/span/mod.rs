@@ -13,7 +13,7 @@
 //! | kernel | what | where |
 //! |---|---|---|
 //! | `portable` | the loop in Rust; the specification | everywhere |
-//! | `asm` | the loop, five instructions a pixel | x86-64 and 32-bit x86, feature `asm` |
+//! | `asm` | the loop, five instructions per pixel | x86-64 and 32-bit x86, feature `asm` |
 //! | `asm-unrolled` | the same, eight pixels per iteration | x86-64, feature `asm` |
 //! | `simd` | the best of the levels below | feature `simd` |
 //! | `simd-arrays` | plain arrays, which the compiler vectorises | everywhere, feature `simd` |
@@ -86,7 +86,7 @@ pub(crate) use lookup::lookup;
 #[cfg(feature = "alloc")]
 pub(crate) use lookup::lookup_row;
 
-/// The most pixels of a piece of a row. Rows whose shades are reseeded, and all rows with effects, are split into pieces.
+/// The maximum length of a piece of a row. Rows with effects, and all whose shades are reseeded, are split into pieces.
 pub(crate) const PIECE: usize = 64;
 
 /// The bare assembly entries, for the tests that call them with garbage in their registers and read their instructions.
@@ -205,8 +205,8 @@ impl Kernel {
         }
     }
 
-    /// Writes like [`fill`](Self::fill), but only the first `length` pixels of a row that has at least as many. The
-    /// rest does not change.
+    /// Writes like [`fill`](Self::fill), but only the first `length` pixels of a row at least that long. The rest does
+    /// not change.
     #[inline]
     pub(crate) fn fill_first(self, length: usize, row: &mut [u8], shade: u16, step: u16) {
         // Usually short, with an unpredictable length: trailing bytes are rewritten unchanged, by code that is inlined.
@@ -293,7 +293,7 @@ impl Kernel {
         }
     }
 
-    /// Copies the first `length` bytes to a row that has at least as many. The rest of the row does
+    /// Copies the first `length` bytes to a row that is at least that long. The rest of the row does
     /// not change.
     #[inline(always)]
     pub(crate) fn copy(self, length: usize, row: &mut [u8], bytes: &[u8]) {

@@ -103,7 +103,7 @@ pub(super) mod sse2 {
         spans.each(pixels, |row, shade, step| unsafe { vectors(row, shade, step) });
     }
 
-    /// Stores the first bytes of a row that has at least as many.
+    /// Stores the first `N` bytes of a row at least that long.
     #[inline(always)]
     fn put_first<const N: usize>(row: &mut [u8], bytes: [u8; N]) {
         if let Some(to) = row.first_chunk_mut() {
@@ -111,7 +111,7 @@ pub(super) mod sse2 {
         }
     }
 
-    /// Stores the last bytes of a row that has at least as many.
+    /// Stores the last `N` bytes of a row at least that long.
     #[inline(always)]
     fn put_last<const N: usize>(row: &mut [u8], bytes: [u8; N]) {
         if let Some(to) = row.last_chunk_mut() {

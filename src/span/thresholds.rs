@@ -39,7 +39,7 @@ impl DitherPattern {
 /// The number of columns after which the thresholds of a row repeat.
 pub const PERIOD: usize = 64;
 
-/// The most neighbouring thresholds that [`ThresholdRow::next`] returns.
+/// The maximum number of neighbouring thresholds that [`ThresholdRow::next`] returns.
 const MAX_BLOCK: usize = 16;
 
 /// Thresholds for a row of the frame. They repeat after 64 columns.

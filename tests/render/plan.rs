@@ -398,7 +398,7 @@ fn nearly_faceted_meshes_are_not_flat_in_strong_light() {
     }
 }
 
-/// Vertices that are kept by force have what their shading needs: others are computed anew.
+/// Vertices that are kept by force have what their shading needs: others are computed again.
 #[test]
 fn vertices_kept_by_force_are_those_of_the_shading() {
     let within = |shades| Some(Accuracy::WithinError(shades));

@@ -33,7 +33,7 @@ impl FrameRate {
         self.0
     }
 
-    /// A fraction of two 16-bit numbers, than which none of smaller numbers is nearer: 35 is 35/1, 29.97 is 2997/100.
+    /// The rate as a fraction of two 16-bit numbers; no smaller ones come nearer: 35 is 35/1, 29.97 is 2997/100.
     ///
     /// ```
     /// use mode13h_assets::animation::FrameRate;

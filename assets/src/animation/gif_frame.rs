@@ -132,8 +132,8 @@ impl GifFrame {
     }
 }
 
-/// The least length of a run of unchanged pixels that become transparent. Shorter runs would break up the pixels around
-/// them, which costs more than it saves: on the torus 16 gave smaller files than 1, 4, 8 and 32.
+/// The minimum length of a run of unchanged pixels that become transparent. Shorter runs would break up the pixels
+/// around them, which costs more than it saves: on the torus 16 gave smaller files than 1, 4, 8 and 32.
 const TRANSPARENT_RUN: usize = 16;
 
 impl Image {

@@ -1,4 +1,4 @@
-//! Palettes made for a scene: each of its materials is measured over a round, and the entries follow from that.
+//! Palettes made for a scene: each of its materials is measured over one loop, and the entries follow from that.
 //!
 
 // | file | what |
@@ -55,7 +55,7 @@ impl AutomaticPalette {
 
 /// Makes a palette for a scene, by [`share_beside`], and its materials for it.
 ///
-/// Area and brightness are measured from what is visible over a round. A material without a colour of its own and
+/// Area and brightness are measured from what is visible over one loop. A material without a colour of its own and
 /// without an image that names a coloured ramp of the scene's palette keeps the colours of that ramp. Any other
 /// material's colour is its [own](Material::own_colors), as it reflects full light, ambient and diffuse together; its
 /// highlight adds to that. On its ramp that colour is at the intensity `full_light` of [`Entries::Ramp`]. So its
@@ -171,7 +171,7 @@ fn of_round(scene: &Scene, round: &Round<'_>) -> Result<AutomaticPalette, Render
     Ok(automatic)
 }
 
-/// The colours that a scene without a chosen background shows over a round, as the card shows them, independent of any
+/// The colours that a scene without a chosen background shows over a loop, as the card shows them, independent of any
 /// palette: each with its area as a fraction of all covered pixels.
 ///
 /// # Errors

@@ -16,13 +16,13 @@ use mode13h::scene::{Motion, Path, Scene};
 use mode13h::settings::Settings;
 use mode13h::vga::Vga;
 
-/// The number of pictures per round, unless too many of them would show the same pose.
+/// The number of pictures per loop, unless too many of them would show the same pose.
 const POSES: u32 = 16;
 
-/// The greatest number of pictures per round.
+/// The maximum number of pictures per loop.
 const MAX_POSES: u32 = 64;
 
-/// Area and brightness of a material, as visible over one round of the scene.
+/// Area and brightness of a material, as visible over one loop of the scene.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub struct Seen {
     /// The share of its pixels among all covered pixels, 0 to 1.
@@ -34,8 +34,8 @@ pub struct Seen {
     pub brightest: f32,
 }
 
-/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a round of the scene, or at one if
-/// nothing moves. There are more moments if a motion repeats a multiple of 8 times per round.
+/// Measures each material of each object in pictures of 320 × 200: at 16 moments of a loop of the scene, or at one if
+/// nothing moves. There are more moments if a motion repeats a multiple of 8 times per loop.
 ///
 /// # Errors
 /// Those of [`Renderer::draw`].
@@ -43,7 +43,7 @@ pub fn seen(scene: &Scene) -> Result<Vec<Vec<Seen>>, RenderError> {
     seen_in(scene, &Round::of(scene))
 }
 
-/// Measures each material of each object at the moments of a round.
+/// Measures each material of each object at the moments of a loop.
 pub(super) fn seen_in(scene: &Scene, round: &Round<'_>) -> Result<Vec<Vec<Seen>>, RenderError> {
     let materials = || scene.objects().iter().flat_map(|object| &object.materials);
     let mut tallies = vec![Tally::default(); materials().count()];
@@ -61,10 +61,10 @@ pub(super) fn seen_in(scene: &Scene, round: &Round<'_>) -> Result<Vec<Vec<Seen>>
     Ok(scene.objects().iter().map(|object| each.by_ref().take(object.materials.len()).collect()).collect())
 }
 
-/// A round of a scene: the moments that are drawn, and what moves in addition to the scene's motions.
+/// One loop of a scene: the moments that are drawn, and what moves in addition to the scene's motions.
 pub(super) struct Round<'p> {
     poses: u32,
-    /// The time of the first moment, and the length of the round, in seconds.
+    /// The time of the first moment, and the length of the loop, in seconds.
     from: f64,
     duration: f64,
     pose: &'p dyn Fn(&mut Scene, f64),
@@ -78,7 +78,7 @@ pub(super) struct Moment<'p> {
 }
 
 impl Round<'_> {
-    /// A round of a scene in which nothing moves but its motions.
+    /// The loop of a scene in which only its motions move anything.
     pub(super) fn of(scene: &Scene) -> Self {
         Self::moved(scene, &[], &|_, _| {})
     }
@@ -90,7 +90,7 @@ impl Round<'_> {
 }
 
 impl<'p> Round<'p> {
-    /// A round of a scene in which `pose` moves something, too, that repeats after each of these times, in seconds.
+    /// The loop of a scene in which `pose` moves more, which repeats after each of these times, in seconds.
     pub(super) fn moved(scene: &Scene, periods: &[f64], pose: &'p dyn Fn(&mut Scene, f64)) -> Self {
         let (poses, from) = match scene.motions.is_empty() && periods.is_empty() {
             true => (1, scene.time()),
@@ -100,7 +100,7 @@ impl<'p> Round<'p> {
     }
 }
 
-/// How often each motion repeats in a round, to the nearest whole number above 0.
+/// How often each motion repeats in a loop, to the nearest whole number above 0.
 fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
     let of_motion = |motion: &Motion| match motion {
         Motion::Spin { turns, .. } => turns.map(|turns| turns * scene.duration),
@@ -113,10 +113,10 @@ fn rounds(scene: &Scene, periods: &[f64]) -> Vec<u32> {
     all.map(|rounds| libm::round(libm::fabs(rounds)) as u32).filter(|rounds| *rounds > 0).collect()
 }
 
-/// The number of moments in a round that show each motion in at least four poses.
+/// The number of moments in a loop that show each motion in at least four poses.
 ///
-/// With r rounds of a motion, n / gcd(n, r) of n moments are different: of 16 moments with 8 rounds only two, and with
-/// 16 rounds one. The number is 16 unless some r is a multiple of 8.
+/// If a motion repeats r times, n / gcd(n, r) of n moments are different: of 16 moments only two for r = 8, and one for
+/// r = 16. The number is 16 unless some r is a multiple of 8.
 fn poses(rounds: &[u32]) -> u32 {
     let shows_all = |poses: &u32| rounds.iter().all(|rounds| poses / common_divisor(*poses, *rounds) >= 4);
     (POSES..=MAX_POSES).find(shows_all).unwrap_or(POSES)
@@ -128,7 +128,7 @@ fn common_divisor(a: u32, b: u32) -> u32 {
 }
 
 impl Moment<'_> {
-    /// Moves everything in the scene, or in a copy of it, to where it is.
+    /// Moves everything in the scene, or in a copy of it, to where it is at this moment.
     pub(super) fn show(self, scene: &mut Scene) {
         scene.set_time(self.seconds);
         (self.pose)(scene, self.seconds);

@@ -88,7 +88,7 @@ pub struct Automatic {
 
 /// The number of entries to distribute: all except the first and the last.
 const CAPACITY: usize = 254;
-/// The least length of a ramp, unless it has fewer colours.
+/// The minimum length of a ramp, unless it has fewer colours.
 const MIN_ENTRIES: usize = 4;
 /// The number of entries reserved for textures before the ramps get theirs.
 const MIN_FOR_TEXTURES: usize = 16;
@@ -98,7 +98,7 @@ const UNSEEN: f64 = 1e-6;
 const NARROWEST: f64 = 0.25;
 /// The number of brightness levels tested for a texture's colours.
 const LEVELS: u8 = 16;
-/// The most textured uses considered: those with the largest areas.
+/// The maximum number of textured uses that are considered: those with the largest areas.
 const MAX_TEXTURED: usize = 64;
 /// The weight of the whole area in median cut.
 const WHOLE: f64 = 16_777_216.0;
@@ -206,7 +206,7 @@ fn best(ramps: &[Wanted], gain: impl Fn(&Wanted) -> f64) -> Option<usize> {
     (0..ramps.len()).reduce(|best, next| if gain(&ramps[next]) > gain(&ramps[best]) { next } else { best })
 }
 
-/// Finds one colour for each box, as far as there are enough colours. No colour occurs twice, and none is in `beside`.
+/// Finds one colour for each box, or fewer if colours run out. No colour occurs twice, and none is in `beside`.
 /// For each colour dropped, another box is cut.
 fn colors_beside(textures: &mut MedianCut, beside: &[Rgb]) -> Vec<Rgb> {
     let wanted = textures.boxes();

@@ -8,7 +8,7 @@ use mode13h::scene::{Camera, Object, ObjectId, Scene, Shared};
 
 use crate::model_file::{Clip, Pose, Rig};
 
-/// The number of poses in a round that a picture is framed for.
+/// The number of poses in a loop that a picture is framed for.
 const POSES: u32 = 16;
 
 /// A model in a scene that plays one of its animations, again and again.
@@ -21,7 +21,7 @@ pub struct Playback {
     object: ObjectId,
     /// The factors by which the object's mesh was stretched.
     stretch: Vec3,
-    /// The scene's lights and its camera are the file's.
+    /// True if the scene's lights come from the file, and if its camera does.
     moves_lights: bool,
     moves_camera: bool,
     /// The time that was shown last, the mesh of the object, and the camera then.

@@ -1,4 +1,4 @@
-//! A studio: orientation, light and background for a model that brings none.
+//! A studio: orientation, light and background for a model that has none.
 //!
 //! **Light.** A key light from the upper right and a fill a quarter as strong from the left, at right angles to it.
 //! Together with the ambient light they add up to 1 at most, so that nothing is overexposed: the brightest face shows
@@ -61,7 +61,7 @@ pub fn studio(mut object: Object, up: Option<UpAxis>) -> Result<Scene, RenderErr
     finish(scene, has_colors)
 }
 
-/// Makes a scene of a model that brings lights or a camera, as its author arranged it: the model keeps its position in
+/// Makes a scene of a model that has lights or a camera, as its author arranged it: the model keeps its position in
 /// the file, and does not turn. Without lights it has the studio's, seen from the camera; without a camera, one that
 /// frames a whole turn.
 ///

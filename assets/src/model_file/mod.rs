@@ -5,7 +5,7 @@
 //! | Wavefront OBJ with MTL | [`obj`] | positions, texture coordinates, normals, smoothing groups, materials |
 //! | STL, text and binary | `stl` | triangles; corners at the same position are one vertex |
 //! | PLY, text and both binaries | `ply` | faces of any size, strips, normals, texture coordinates, colours |
-//! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene as one mesh: materials, textures in the file and beside it, colours; lights, a camera, animations |
+//! | glTF 2.0, `.gltf` and `.glb` (feature `gltf`) | `gltf` | the scene as one mesh: materials, textures inside the file or separate, colours; lights, a camera, animations |
 //!
 //! The file name's extension determines the format, with or without `.gz` after it. Without a known extension the
 //! contents decide. Gzipped files are unpacked, whatever their name.

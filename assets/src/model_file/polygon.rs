@@ -9,7 +9,7 @@ use mode13h::glam::Vec3;
 use super::ModelFileErrorKind;
 use crate::wide::{Wide, add, cross, sub, widen};
 
-/// The most corners of a concave face, unless it is monotone. The time of ear clipping grows quadratically if corners
+/// The maximum number of corners of a concave face, unless it is monotone. Ear clipping takes quadratic time if corners
 /// are spread unevenly or edges cross: 20,000 take 0.1 s in the shape of a star, 4 s in the shape of many crossing
 /// pentagrams, and 64,000 already 10 s and more. So no corner of a file costs more than 20,000 steps.
 const MAX_CONCAVE: usize = 20_000;

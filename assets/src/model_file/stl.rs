@@ -7,7 +7,7 @@
 //! | corners at the same position, to the bit | one vertex, with −0 as 0 |
 //! | names of solids, up to the end of the line or a `facet normal` in it; the header and the attributes of a binary file | ignored; colours there with a warning |
 //!
-//! A file is binary if its length matches the number of triangles it announces, whatever it begins with, since some
+//! A file is binary if its length matches the number of triangles it declares, whatever it begins with, since some
 //! binary files begin with `solid`, too. z points up, as is usual in 3-D printing.
 
 use std::collections::HashMap;
@@ -20,7 +20,7 @@ use crate::model_file::tokens::{Tokens, expected};
 use crate::model_file::word::without_mark;
 use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place};
 
-/// The number of bytes before the triangles of a binary file: 80 of any meaning, and the triangle count.
+/// The number of bytes before the triangles of a binary file: 80 arbitrary ones, and the triangle count.
 const HEADER: usize = 84;
 
 /// The number of bytes of a triangle: a normal and three corners in f32, and two bytes of attributes.
@@ -68,7 +68,7 @@ fn skip_normal(words: &mut Tokens<'_>) {
     }
 }
 
-/// The number of triangles that a binary file announces.
+/// The number of triangles that a binary file declares.
 fn announced(bytes: &[u8]) -> Option<u32> {
     bytes.get(HEADER - 4..)?.first_chunk().map(|count| u32::from_le_bytes(*count))
 }
@@ -196,7 +196,7 @@ fn read_binary(bytes: &[u8], path: &Path, draft: &mut Draft, merged: &mut Merged
     if left > 0 {
         draft
             .warnings
-            .push(|| format!("{shown}: byte {}: {left} bytes after the triangles left out", bytes.len() - left));
+            .push(|| format!("{shown}: byte {}: ignored {left} bytes after the triangles", bytes.len() - left));
     }
     if colored {
         draft.warnings.push(|| format!("{shown}: triangle colours left out"));

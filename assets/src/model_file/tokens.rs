@@ -1,4 +1,4 @@
-//! Words of a text format in which line ends count as blanks, with their line numbers.
+//! Words of a text format in which line endings count as whitespace, with their line numbers.
 
 use super::word::{parsed, shown};
 use super::{ModelFileError, ModelFileErrorKind, Place};
@@ -55,7 +55,7 @@ impl<'b> Tokens<'b> {
     }
 }
 
-/// Returns whether a blank ends a line: an LF, or a CR without an LF after it.
+/// Returns whether a whitespace character ends a line: an LF, or a CR without an LF after it.
 fn ends_line(bytes: &[u8], at: usize, byte: u8) -> bool {
     byte == b'\n' || (byte == b'\r' && bytes.get(at + 1) != Some(&b'\n'))
 }

@@ -9,7 +9,7 @@ pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
     rest.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).take_while(|word| word[0] != b'#')
 }
 
-/// A name or a path: the rest of the line, which may contain blanks.
+/// A name or a path: the rest of the line, which may contain spaces.
 pub(super) fn name(rest: &[u8]) -> String {
     String::from_utf8_lossy(rest.trim_ascii()).into_owned()
 }
@@ -23,7 +23,7 @@ pub(super) fn parsed<T: FromStr + Copy>(word: &[u8], is_finite: fn(T) -> bool) -
     }
 }
 
-/// A word as shown in an error: on one line, and short, for words may be a megabyte long.
+/// A word as shown in an error: on one line, and short, since words may be a megabyte long.
 pub(super) fn shown(word: &[u8]) -> String {
     shortened(word, 40)
 }

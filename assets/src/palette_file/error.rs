@@ -31,7 +31,7 @@ pub enum PaletteErrorKind {
     Empty,
     /// The file matches none of the formats.
     UnknownFormat,
-    /// A line with a fixed text has another text.
+    /// A line differs from the fixed text that it must have.
     Expected {
         /// The expected text.
         expected: &'static str,
@@ -55,16 +55,16 @@ pub enum PaletteErrorKind {
     },
     /// The file has a 257th colour.
     TooManyColors,
-    /// There is a colour, or something else, after the last one that the file announces.
+    /// There is a colour, or something else, after the last one that the file declares.
     MoreThanAnnounced {
-        /// The number announced.
+        /// The number declared.
         announced: usize,
     },
     /// The file ends too soon.
     TooFewColors {
         /// The number of colours in the file.
         found: usize,
-        /// The number announced, or at least 1.
+        /// The number declared, or at least 1.
         expected: usize,
     },
     /// The file's length is not one of the format's.

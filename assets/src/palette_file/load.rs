@@ -12,11 +12,11 @@ use super::error::PaletteError;
 use super::{Format, parse_named};
 use crate::texture;
 
-/// The most bytes read from a palette file. None is longer, not even one with a paragraph for each colour; a longer one
-/// fails on the part that is read.
+/// The maximum number of bytes read from a palette file. None is longer, not even one with a paragraph for each colour;
+/// a longer one fails on the part that is read.
 const LONGEST: usize = 1 << 20;
 
-/// The most bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.
+/// The maximum number of bytes read from a picture: an incompressible one of 4,096 × 4,096 in true colour.
 pub(crate) const LONGEST_PICTURE: u64 = 64 << 20;
 
 /// The reason why a file gives no palette.

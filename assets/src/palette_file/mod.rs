@@ -130,7 +130,7 @@ impl Format {
     /// Writes a file of this format with all 256 entries. Reading it returns the same colours, except for a `vga` file
     /// with colours below 64 that the DAC does not have, as described below.
     ///
-    /// `name` is the palette's name, which `gimp` files contain; control characters become blanks.
+    /// `name` is the palette's name, which `gimp` files contain; control characters become spaces.
     ///
     /// A `vga` file is written in 6 bits if that preserves every colour. Otherwise, if some value is over 63, it is
     /// written in 8 bits. If no value is over 63, 8 bits would be mistaken for 6 on reading; such a palette is rounded

@@ -60,7 +60,7 @@ pub(super) fn first_line_is(text: &[u8], expected: &str) -> bool {
     Lines::new(text).next().is_some_and(|(_, line)| line == expected.as_bytes())
 }
 
-/// Parses decimal digits without sign or blank. `None` if the number is more than `most`.
+/// Parses decimal digits without signs or spaces. `None` if the number is more than `most`.
 pub(super) fn decimal(digits: &[u8], most: u32) -> Option<u32> {
     // `parse` would accept a sign.
     let digits = str::from_utf8(digits).ok().filter(|digits| digits.bytes().all(|digit| digit.is_ascii_digit()))?;

@@ -185,8 +185,8 @@ impl fmt::Display for SceneErrorKind {
         match self {
             Self::Read(error) => write!(f, "{error}"),
             Self::Directory => write!(f, "is a directory"),
-            Self::TooLong => write!(f, "too long: a scene may have at most 1 MiB"),
-            Self::NotText => write!(f, "not text in UTF-8"),
+            Self::TooLong => write!(f, "too long: a scene file may be at most 1 MiB"),
+            Self::NotText => write!(f, "not UTF-8 text"),
             Self::NotToml(what) => write!(f, "not TOML: {what}"),
             Self::UnknownKey { known } => write!(f, "unknown key; known are {known}"),
             Self::MissingKey => write!(f, "missing"),
@@ -214,7 +214,7 @@ impl error::Error for SceneError {
     }
 }
 
-/// The most characters shown of a message, which may quote the file.
+/// The maximum number of characters shown of a message, which may quote the file.
 const LONGEST_MESSAGE: usize = 2500;
 
 /// A writer that puts its text on one line, printable, and not too long to read.

@@ -1,8 +1,8 @@
 //! Limits of a scene file.
 
-/// The most bytes of a scene file: 1 MiB.
+/// The maximum size of a scene file, in bytes: 1 MiB.
 pub const LONGEST: usize = 1 << 20;
 
-/// The most triangles of all shapes in a scene together: slightly more than one for every pixel of mode 13h. Models may
-/// have more.
+/// The maximum number of triangles in all shapes of a scene: slightly more than one for every pixel of mode 13h. Models
+/// may have more.
 pub const MAX_TRIANGLES: u64 = 1 << 16;

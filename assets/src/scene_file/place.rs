@@ -33,7 +33,7 @@ pub(super) fn key_at(text: &str, span: &Range<usize>) -> Option<String> {
     in_table(DeTable::parse(text).ok()?.get_ref(), span, "")
 }
 
-/// The most characters of a key that are shown. Every known key is shorter.
+/// The maximum number of characters shown of a key. Every known key is shorter.
 const LONGEST_KEY: usize = 60;
 
 // The span of a table or list is that of the header that opened it, so several nested ones may have the same span: the

@@ -63,7 +63,7 @@ fn product(subdivisions: &[u32]) -> u64 {
 }
 
 impl Shape {
-    /// Returns the shape's subdivisions, given a scene's, of which there must be as many.
+    /// Checks the subdivisions that a scene gives: as many as the shape has, each within its range.
     pub(super) fn subdivided(self, given: &[i64]) -> Result<Vec<u32>, String> {
         if given.len() != self.subdivisions.len() {
             let names: Vec<&str> = self.subdivisions.iter().map(|row| row.0).collect();

@@ -120,7 +120,7 @@ numbers! {
     Crease(f32): "a number of degrees from 0 to 180", |x| (0.0..=180.0).contains(&x);
     /// An entry of the palette.
     Entry(f32): "a palette entry, a whole number from 0 to 255", |x| (0.0..=255.0).contains(&x) && x == libm::truncf(x);
-    /// Bits after the point of vertices.
+    /// Fractional bits of vertex coordinates.
     VertexBits(f32): "a number of bits, a whole number from 0 to 8", |x| (0.0..=8.0).contains(&x) && x == libm::truncf(x);
     /// A number of palette entries.
     Entries(f32): "a number of palette entries, from 1 to 256", |x| (1.0..=256.0).contains(&x) && x == libm::truncf(x);
@@ -147,7 +147,7 @@ impl Entries {
     }
 }
 
-/// A type of list items.
+/// A type that the items of a list can have.
 pub(super) trait Item {
     /// Their name in the plural.
     const ITEMS: &'static str;

@@ -12,7 +12,7 @@ use std::str::FromStr;
 use mode13h::UnknownName;
 use mode13h::export::{Picture, PictureError, Scale};
 
-/// A protocol by which a terminal takes pictures.
+/// A protocol for showing pictures in a terminal.
 ///
 /// ```
 /// use mode13h::export::{Picture, Scale};
@@ -28,7 +28,7 @@ use mode13h::export::{Picture, PictureError, Scale};
 #[non_exhaustive]
 pub enum Protocol {
     /// DEC's sixels (VT340, 1987), in xterm, foot, mlterm, `WezTerm`, Windows Terminal and others: palette indices as they
-    /// are. Its colours are whole percents, so a channel is off by at most 1.3 of 255.
+    /// are. Its colours are whole percentages, so a channel is off by at most 1.3 of 255.
     Sixel,
     /// The graphics protocol of kitty, also in Ghostty, Konsole and `WezTerm`: an indexed PNG in base64. Its colours are
     /// exact.

@@ -12,8 +12,8 @@
 //! ESC \                    the end
 //! ```
 //!
-//! Colour n is entry n of the palette, and only those that the picture has are defined. Percents are to the nearest, so
-//! channels are off by at most half of 2.55, and the DAC's 64 levels stay different.
+//! Colour n is entry n of the palette, and only those that the picture uses are defined. Percentages are rounded to the
+//! nearest, so channels are off by at most half of 2.55, and the DAC's 64 levels stay distinct.
 //!
 //! Source: *VT330/VT340 Programmer Reference Manual, Volume 2: Graphics Programming* (DEC, 1988), chapter 14.
 
@@ -63,7 +63,7 @@ fn write(text: &mut String, picture: &Picture<'_>, scaled: &Scaled<'_>, width: u
     Ok(())
 }
 
-/// A channel in percent, to the nearest.
+/// A channel in percent, rounded to the nearest.
 fn percent(channel: u8) -> u16 {
     (200 * u16::from(channel) + 255) / 510
 }
@@ -100,7 +100,7 @@ impl Band {
         }
     }
 
-    /// Writes the passes. Colours that lie beside each other share one.
+    /// Writes the passes. Colours whose columns do not overlap share one.
     fn write(&self, text: &mut String) -> fmt::Result {
         let mut left: Vec<(usize, usize, usize)> = self
             .reach

@@ -22,7 +22,7 @@ use indexed::Indexed;
 /// The first bytes of a PNG.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// The most memory for reading a picture: 4,096 × 4,096 pixels of four 16-bit samples.
+/// The maximum memory for reading a picture: 4,096 × 4,096 pixels of four 16-bit samples.
 const MAX_BYTES: usize = 4_096 * 4_096 * 8;
 
 /// The reason why a file gives no texture.

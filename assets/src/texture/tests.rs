@@ -34,7 +34,7 @@ const PICTURE: [u8; 32] = [
     200, 1, 193, 193, 0, 255, 255, 8,
 ];
 
-/// Checks that the indices are preserved; texels are from the bottom up.
+/// Checks that the indices are preserved; rows of texels run from the bottom up.
 fn assert_kept(bytes: &[u8]) {
     let texture = decoded(bytes).texture;
     let expected: Vec<u8> = PICTURE.chunks(8).rev().flatten().copied().collect();

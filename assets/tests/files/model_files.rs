@@ -428,7 +428,7 @@ fn faces_have_the_texture_of_their_number() {
     assert!(model.mesh.surfaces().len() == 1 && model.warnings.is_empty());
     let model = with_textures(two, [""; 3]);
     assert_eq!(textures(&model), [name("a.png"), name("a.png"), name("a.png")]);
-    assert_eq!(model.warnings, ["a.ply:3: no texnumber of faces; drawn with the first of 2 textures"]);
+    assert_eq!(model.warnings, ["a.ply:3: faces have no texnumber; drawn with the first of 2 textures"]);
 }
 
 #[test]

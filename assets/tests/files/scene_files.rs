@@ -332,7 +332,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     let of = |bytes: &[u8]| Scene::from_toml_bytes(bytes, "a.toml", open).expect_err("no scene");
     let error = of(b"name = '\xC3\xA9'\nname = '\xFF'");
     assert!(matches!(*error.kind, SceneErrorKind::NotText));
-    assert_eq!(error.to_string(), "a.toml:2:9: not text in UTF-8");
+    assert_eq!(error.to_string(), "a.toml:2:9: not UTF-8 text");
     tried.add(1);
     assert_eq!(of(b"\xFF").place, Some(Place { line: 1, column: 1 }));
     tried.add(1);
@@ -341,7 +341,7 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
     assert!(loaded(&longest).is_ok());
     tried.add(1);
     let error = loaded(&(longest.clone() + "#")).expect_err("too long");
-    assert_eq!(error.to_string(), "folder/scene.toml: too long: a scene may have at most 1 MiB");
+    assert_eq!(error.to_string(), "folder/scene.toml: too long: a scene file may be at most 1 MiB");
     tried.add(1);
 
     // The same for files.

@@ -47,7 +47,7 @@ struct OwnX {
     shade: i32,
 }
 
-/// Draws by the engine.
+/// Draws with the engine.
 fn by_engine(
     canvas: &mut Canvas,
     [width, height, pitch]: [u32; 3],
@@ -295,8 +295,8 @@ fn clipped_neighbours_leave_no_hole() {
     assert!(drawn > 100_000 && clipped > 20);
 }
 
-/// Huge triangles and such as reach behind the eye are not lost, whatever the near plane: in the middle of the frame each
-/// covers what it covers in exact arithmetic.
+/// Huge triangles and those that reach behind the eye are not lost, whatever the near plane: in the middle of the frame
+/// each covers what it covers in exact arithmetic.
 #[test]
 fn clipped_triangles_are_drawn() {
     let mut random = Random::named("huge triangles of C");

@@ -215,7 +215,7 @@ impl Progress {
     }
 }
 
-/// The study for programs.
+/// The study as JSON, for other programs.
 fn as_json(study: &Study, warnings: &[String]) -> Result<String, Failure> {
     #[derive(Serialize)]
     struct Json<'a> {

@@ -42,7 +42,7 @@ fn level(index: u8) -> (Rgb, &'static str) {
 
 /// Distance between the pixels that the first map judges, in columns and in rows.
 const COARSE: u32 = 4;
-/// The least time from one refined map to the next.
+/// The minimum time from one refined map to the next.
 const REPORT: Duration = Duration::from_millis(60);
 /// Sides of the small picture, as a share of the large one's.
 const SMALL: f32 = 0.3;
@@ -181,7 +181,7 @@ impl Map {
         }
     }
 
-    /// Lays it over what `vga` shows, if it is the map of that frame: the one with this number, whose second side
+    /// Draws the map over what `vga` shows, if it belongs to that frame: the one with this number, whose second side
     /// begins at column `divider`. [`legend`](Self::legend) says what the colours mean.
     pub(super) fn lay_over(&self, vga: &mut Vga, number: u64, divider: usize) {
         if let Some(found) = self.of(number) {
@@ -191,7 +191,7 @@ impl Map {
         }
     }
 
-    /// Lays it over its own frame, in a corner, if another frame is shown.
+    /// Draws the map in a corner, over its own frame, if another frame is shown.
     pub(super) fn corner(&self, sheet: &mut Sheet, number: u64) {
         let Some(Measured { snapshot, found: Ok(found) }) = &self.last else { return };
         if snapshot.number == number {
@@ -333,7 +333,7 @@ fn place(x: u32, y: u32) -> usize {
     y as usize * Vga::WIDTH + x as usize
 }
 
-/// Truth and pictures, as far as they are known.
+/// A frame that is being judged: the truth computed so far, and the pictures to compare with it.
 struct Judged {
     /// The true frame.
     right: TruthFrame,
@@ -380,7 +380,7 @@ impl Judged {
         Ok(Found { sides: self.known.iter().zip(&self.faces).map(side).collect::<Result<_, String>>()?, refined })
     }
 
-    /// Gives pixels that are not known yet the level of the one that was judged for their block. Errors of cover
+    /// Gives pixels that are not known yet the level of the one that was judged for their block. Coverage errors
     /// concern single pixels, and are not spread.
     fn spread(&self, levels: &mut [Option<u8>], faces: &[Option<Face>]) {
         for i in (0..levels.len()).filter(|&i| !self.is_known[i] && faces[i].is_some()) {

@@ -1,5 +1,5 @@
-//! The inputs named on the command line, loaded in the background: the first one, another on request, and the one on
-//! show again when one of its files has changed.
+//! The inputs named on the command line, loaded in the background: the first one, another on request, and the current
+//! one again when one of its files has changed.
 
 use std::ffi::OsString;
 use std::fs;

@@ -72,11 +72,11 @@ const KEYS: Keys = &[
 
 /// A part of the window with keys of its own.
 trait Panel {
-    /// Follows the user's input.
+    /// Handles the user's input.
     fn follow(&mut self, input: &Input, show: &mut Show) -> Result<(), Failure>;
 
-    /// Adapts to another stage. If that `keeps` the changes made by keys, they are made again; otherwise all starts
-    /// over.
+    /// Adapts to another stage. With `keeps`, changes made by keys are applied to it again; otherwise everything is
+    /// reset.
     fn renew(&mut self, _show: &mut Show, _keeps: bool) -> Result<(), Failure> {
         Ok(())
     }
@@ -139,7 +139,7 @@ pub(crate) struct Options {
     terminal: bool,
     /// Send pictures to the terminal as sixel or kitty
     ///
-    /// Sixels round colours to whole percents; kitty's are exact.
+    /// Sixels round colours to whole percentages; kitty's are exact.
     ///
     /// [default: kitty if the environment names kitty or Ghostty, or else sixel]
     #[arg(
@@ -366,7 +366,7 @@ impl Demo {
         }
     }
 
-    /// Follows the user's input in the frame that shows the time `seconds`.
+    /// Handles the user's input in the frame that shows the time `seconds`.
     fn follow(&mut self, input: &Input, seconds: f64) -> Result<(), Failure> {
         let Demo { show, panels } = self;
         show.seconds = seconds;

@@ -19,7 +19,7 @@ const DRAG: f64 = std::f64::consts::PI / Vga::WIDTH as f64;
 const PIXEL_HEIGHT: f64 = Vga::PIXEL_ASPECT.1 as f64 / Vga::PIXEL_ASPECT.0 as f64;
 /// Factor by which one notch of the wheel, or one + or -, enlarges.
 pub(super) const NOTCH: f64 = 1.1;
-/// The least and the greatest enlargement.
+/// The minimum and maximum zoom.
 const ZOOM: (f64, f64) = (0.25, 8.0);
 /// The longest time that a key counts as held for in one frame, in seconds, so that nothing jumps after a pause.
 const LONGEST_FRAME: f64 = 0.1;

@@ -12,9 +12,9 @@ pub(super) struct Scenes {
     /// Its index in the list.
     pub(super) at: usize,
     pub(super) is_loading: bool,
-    /// Name of the one on show.
+    /// Name of the current one.
     pub(super) name: String,
-    /// Reason why the scene on show differs from the files.
+    /// Why the scene that is shown differs from the files.
     pub(super) wrong: Option<Failure>,
 }
 

@@ -78,7 +78,7 @@ fn wish(input: &Input, is_right: bool) -> Option<Wish> {
         .or(bracket(Key::RightBracket, ']').then_some(Wish::Dearer))
 }
 
-/// The next in a falling list, from whatever the command line or the scene says.
+/// The next smaller entry of a descending list; `than` need not be in the list itself.
 fn less(list: &[f32], than: f32) -> f32 {
     list.iter().copied().find(|&entry| entry < than).unwrap_or(than)
 }
@@ -126,7 +126,7 @@ impl ShadingChoice {
         }
     }
 
-    /// Follows the user's input for the picture, or for the right half of one. Returns whether there was a request.
+    /// Handles the user's input for the picture, or for its right half. Returns whether there was a request.
     pub(super) fn follow(&mut self, input: &Input, is_right: bool) -> bool {
         let wish = wish(input, is_right);
         wish.into_iter().for_each(|wish| self.fulfil(wish));

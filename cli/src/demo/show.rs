@@ -1,4 +1,4 @@
-//! State shared by all panels: the scene on show, its picture, and the messages over it.
+//! State shared by all panels: the current scene, its picture, and the messages over it.
 
 use std::sync::Arc;
 use std::time::Instant;
@@ -80,7 +80,7 @@ impl Half {
 /// State shared by all panels.
 pub(super) struct Show {
     pub(super) inputs: Arc<Inputs>,
-    /// Scene on show; without objects until something has been loaded.
+    /// The current scene; without objects until something has been loaded.
     pub(super) stage: Turntable,
     /// The picture, and the other one while two shadings are compared.
     pub(super) halves: [Half; 2],
@@ -118,7 +118,7 @@ impl Show {
         }
     }
 
-    /// Triangles of the scene.
+    /// The number of triangles in the scene.
     pub(super) fn triangles(&self) -> usize {
         self.stage.scene.objects().iter().map(|object| object.mesh().triangles().len()).sum()
     }
@@ -152,7 +152,7 @@ impl Show {
         self.notice = Some((what.into(), self.seconds + NOTICE));
     }
 
-    /// Draws the picture, without the error map. The halves stay as they are, for the next frame may be the same.
+    /// Draws the picture, without the error map. The halves stay as they are, since the next frame may be the same.
     pub(super) fn draw(&mut self) -> Result<(), RenderError> {
         let count = self.seen().len();
         for half in &mut self.halves[..count] {

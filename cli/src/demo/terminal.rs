@@ -1,4 +1,4 @@
-//! `mode13h demo --terminal`: one INPUT in a terminal that shows pictures, as over ssh.
+//! `mode13h demo --terminal`: one INPUT in a terminal that shows pictures, for example over ssh.
 //!
 //! The terminal is restored however this ends: by a key, after the last frame, by an error, or by a signal.
 

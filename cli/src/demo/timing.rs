@@ -16,7 +16,7 @@ pub(super) struct Timing {
 }
 
 impl Timing {
-    /// The least time from one figure to the next, in seconds.
+    /// The minimum time from one figure to the next, in seconds.
     const PERIOD: f64 = 0.5;
 
     /// Records that a frame was shown at the time `now`. It was drawn in `taken` seconds or, with `None`, was already

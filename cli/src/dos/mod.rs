@@ -39,7 +39,7 @@ const FLOPPY: usize = 2 * 80 * 18 * 512;
 
 /// Bytes of the stub's table in `PLAYER`: offset and length of the film, the stack's top, the extended memory in KB.
 const TABLE: usize = 4;
-/// Most bytes that a program may have, as DOS loads it below 640 KB.
+/// Maximum size of a program, in bytes, as DOS loads it below 640 KB.
 const MAX_SIZE: usize = 500_000;
 /// Bytes of stack behind the program, half of it for real mode.
 const STACK: usize = 0x1_0000;
@@ -128,7 +128,7 @@ fn losses(stage: &mut Turntable, like: &Renderer) -> Result<Option<String>, Fail
     Ok((!lost.is_empty()).then(|| format!("left out, because the program computes in 16.16: {}", lost.join(", "))))
 }
 
-/// A name that DOS allows: at most eight letters, digits and a few signs.
+/// A name that DOS allows: at most eight characters, each a letter, a digit or one of a few symbols.
 fn short_name(name: &str) -> String {
     let fits = |c: &char| c.is_ascii_alphanumeric() || "_-".contains(*c);
     let short: String = name.chars().filter(fits).take(8).collect::<String>().to_ascii_uppercase();

@@ -1,4 +1,4 @@
-//! Unpacks films: their length, a word, then a stream of deflate. The program for DOS includes this file.
+//! Unpacks films: their length, a word, then a deflate stream. The program for DOS includes this file.
 
 use alloc::vec::Vec;
 

@@ -20,7 +20,7 @@ pub(crate) use text::{Letters, Row, wrapped};
 
 /// Colour of ordinary text.
 pub(crate) const TEXT: Rgb = Rgb::new(0xF0, 0xF0, 0xF0);
-/// Colour of a row's head, the name of the text beside it.
+/// Colour of a row's head: the label of the text next to it.
 pub(crate) const HEAD: Rgb = Rgb::new(0xFF, 0xD0, 0x60);
 /// Colour of a fault.
 pub(crate) const WRONG: Rgb = Rgb::new(0xFF, 0x90, 0x80);
@@ -77,7 +77,7 @@ pub(crate) struct Sheet {
 }
 
 impl Sheet {
-    /// An empty one.
+    /// An empty sheet.
     pub(crate) fn new((width, height): (usize, usize)) -> Sheet {
         let (picture, letters) = (Area::within(width, height), Letters::of_window(width, height));
         let free = [(PADDING, height.saturating_sub(PADDING)); 2];
@@ -175,14 +175,14 @@ impl Sheet {
         let pages = lines.len().div_ceil(per_page);
         let page = page.min(pages - 1);
         let mut lines: Vec<Laid> = lines.into_iter().skip(page * per_page).take(per_page).collect();
-        let (number, long) = (page + 1, format!("page {} of {pages}, {key} turns it", page + 1));
+        let (number, long) = (page + 1, format!("page {} of {pages}, {key} for the next", page + 1));
         let said = if long.len() <= columns { long } else { format!("{number}/{pages} {key}") };
         lines.push(Laid { head: Head::Words(said), column: 0, text: String::new() });
         self.lay(side, letters, &lines);
         pages
     }
 
-    /// Lays lines that fit.
+    /// Lays out a panel of lines that fit.
     fn lay(&mut self, side: Side, letters: Letters, lines: &[Laid]) {
         let widest = lines.iter().map(Laid::width).max().unwrap_or(0);
         let (width, height) = (widest * letters.width() + 2 * PADDING, lines.len() * letters.line() + 2 * PADDING);
@@ -208,7 +208,7 @@ impl Sheet {
         }
     }
 
-    /// Draws it all.
+    /// Draws the whole sheet.
     pub(crate) fn draw(&self, canvas: &mut Canvas<'_>) {
         for thing in &self.things {
             match thing {

@@ -4,7 +4,7 @@ use embedded_graphics::mono_font::MonoFont;
 use embedded_graphics::mono_font::iso_8859_1::{FONT_6X9, FONT_6X12, FONT_9X15};
 use mode13h::palette::Rgb;
 
-/// The fewest letters to a line, and the fewest lines, that a panel needs: smaller windows have none.
+/// The minimum number of characters per line, and of lines, for a panel: smaller windows have none.
 pub(super) const MIN_SIZE: (usize, usize) = (8, 2);
 
 /// Sets of letters, each of fixed width. In each the full stop is a square dot.

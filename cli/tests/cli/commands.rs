@@ -1392,7 +1392,7 @@ fn f3_broken_scenes_are_one_line_with_their_place() {
         ("model.toml", 2, "model.toml:2:9: key `objects[0].model`: nan.obj:2: `NaN`"),
         ("no.toml", 2, "no.toml: no object: a scene needs at least one"),
         ("syntax.toml", 2, "syntax.toml:1:8: not TOML: "),
-        ("binary.toml", 2, "binary.toml:1:1: not text in UTF-8"),
+        ("binary.toml", 2, "binary.toml:1:1: not UTF-8 text"),
         ("control.toml", 2, "control.toml:1:22: key `objects[0].shape`: "),
         ("directory.toml", 1, "directory.toml: is a directory"),
         ("none.toml", 1, "none.toml: No such file"),

@@ -27,7 +27,7 @@ fn frames_by_each_kernel() {
     let text = Folder::new().printed("verify --frame canvas");
     let kernels: Vec<&str> = Kernel::available().map(Kernel::name).collect();
     let count = frames::all().iter().filter(|frame| frame.name.starts_with("canvas/")).count();
-    let frames = format!("frames: {count} by each kernel, {} in all, ok", count * kernels.len());
+    let frames = format!("frames: {count} with each kernel, {} in all, ok", count * kernels.len());
     let lines: Vec<&str> = text.lines().collect();
     assert_eq!(lines[..2], [format!("kernels {}; seed 13", kernels.join(", ")), frames]);
     assert!(lines.len() == 3 && lines[2].starts_with("hash ") && lines[2].ends_with(", as on every machine"), "{text}");
@@ -56,7 +56,7 @@ fn the_same_for_programs() {
 fn one_frame_is_drawn() {
     let folder = Folder::new();
     let text = folder.printed("verify --frame canvas/bands/plain -o bands.PNG");
-    assert!(text.contains("frames: 1 by each kernel") && text.contains("picture: bands.PNG\n"), "{text}");
+    assert!(text.contains("frames: 1 with each kernel") && text.contains("picture: bands.PNG\n"), "{text}");
     assert_eq!(folder.png("bands.PNG").size, (320, 200));
     assert_eq!(folder.printed("verify --list").lines().count(), frames::all().len());
     for (words, says) in [

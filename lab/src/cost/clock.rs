@@ -31,7 +31,7 @@ impl Clock {
         (time.as_nanos() as f64, result)
     }
 
-    /// Measures the clock's step in nanoseconds: the median of a hundred.
+    /// Measures the clock's resolution in nanoseconds: the median of a hundred steps.
     pub(super) fn step(self) -> f64 {
         let mut steps = [0.0; 100];
         for step in &mut steps {

@@ -76,7 +76,7 @@ impl<'a> Configuration<'a> {
         shadings.chain(BUDGETS.into_iter().map(Self::budget)).collect()
     }
 
-    /// The configuration with vertices rounded to `bits` bits after the point.
+    /// The configuration with vertices rounded to `bits` fractional bits.
     pub(super) fn with_vertex_bits(self, bits: u8) -> Self {
         let set = self.set;
         let set = Box::new(move |renderer: &mut Renderer| {

@@ -23,7 +23,7 @@ use mode13h::scene::Scene;
 use mode13h::vga::Vga;
 use mode13h_conformance::Random;
 
-/// Fewest rounds if time allows, fewest in any case, and most.
+/// The minimum number of rounds if time allows, the minimum in any case, and the maximum.
 const ROUNDS: (usize, usize, usize) = (25, 7, 2001);
 
 /// Ratios whose intervals are wider than this share of the ratio get twice the time.

@@ -19,7 +19,7 @@ use mode13h::settings::{Accuracy, Shading};
 /// coloured, each channel is drawn separately.
 ///
 /// The **faces** are found by drawing, too: every triangle is numbered, and the scene is drawn once for each digit of
-/// the numbers, with every triangle showing its digit in place of a shade. Cover, clipping, splitting and visibility
+/// the numbers, with every triangle showing its digit in place of a shade. Coverage, clipping, splitting and visibility
 /// are thus the renderer's own, and nothing in it knows that it is being watched.
 ///
 /// ```

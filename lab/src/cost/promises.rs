@@ -10,7 +10,7 @@ pub(super) const PROMISE: f64 = 1.0;
 /// processor.
 const LIMIT: f64 = 1.05;
 
-/// Share of covered pixels not compared from which a study warns about them.
+/// A study warns if at least this share of the covered pixels could not be compared.
 const BLIND: f64 = 0.005;
 
 /// Outcome of a promise.
@@ -48,7 +48,7 @@ impl BudgetRow {
             Promise::Kept => "time within its aim",
             Promise::KeptWithinChance => "time within its aim, as far as can be told",
             Promise::Broken => "time beyond its aim",
-            Promise::Void => "no single shading keeps it, so there is no aim of time",
+            Promise::Void => "no single shading keeps it, so there is no time to aim for",
             Promise::Unmeasured => "time not measured",
         };
         format!("{accuracy}; {time}")
@@ -176,7 +176,7 @@ mod tests {
             (0.998_9, phong(1.05), "accuracy not kept; time within its aim"),
             (1.0, phong(1.06), "accuracy kept; time within its aim, as far as can be told"),
             (1.0, phong(1.2), "accuracy kept; time beyond its aim"),
-            (1.0, None, "accuracy kept; no single shading keeps it, so there is no aim of time"),
+            (1.0, None, "accuracy kept; no single shading keeps it, so there is no time to aim for"),
             (f64::NAN, phong(f64::NAN), "accuracy not kept; time not measured"),
         ] {
             let row = budget(4.0, within, best);

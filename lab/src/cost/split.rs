@@ -32,10 +32,10 @@ use mode13h_conformance::Random;
 /// [`Screen::MODE_13H`] with every pixel cut in two.
 const WIDE: Screen = Screen { width: 640, height: 200, pixel_aspect: (5, 12) };
 
-/// Fewest and most rounds.
+/// The minimum and maximum number of rounds.
 const ROUNDS: (usize, usize) = (3, 301);
 
-/// The most frames drawn of those given.
+/// The maximum number of the given frames that are drawn.
 const FRAMES: usize = 4;
 
 /// Measured parts of a frame.

@@ -156,7 +156,7 @@ pub struct ShadingRow {
 pub struct BudgetRow {
     /// Error that is accepted, in shades.
     pub max_error: f64,
-    /// Share of covered pixels within it of `lit`, 0 to 1.
+    /// Share of covered pixels that differ from `lit` by at most this error, 0 to 1.
     pub within: f64,
     /// Share of the covered pixels that were not compared with `lit` because they show another face, 0 to 1.
     pub not_compared: f64,
@@ -167,13 +167,13 @@ pub struct BudgetRow {
     /// Number of pixels in the largest connected patch beyond the budget.
     #[cfg_attr(feature = "serde", serde(rename = "largest_patch"))]
     pub patch: usize,
-    /// Change of the errors from one frame to the next, root mean square; it includes what choices that change from
-    /// frame to frame add.
+    /// Change of the errors from one frame to the next, root mean square, including the effect of choices that differ
+    /// between the two.
     pub swim: f64,
     /// Time per frame.
     #[cfg_attr(feature = "serde", serde(rename = "ns_per_frame"))]
     pub per_frame: Nanoseconds,
-    /// The cheapest shading with exact cover that keeps every pixel within the budget, if there is one.
+    /// The cheapest shading with exact coverage that keeps every pixel within the budget, if there is one.
     #[cfg_attr(feature = "serde", serde(serialize_with = "json::maybe"))]
     pub best_single_shading: Option<Shading>,
     /// The time per frame of `best_single_shading`, measured alongside the budget's.

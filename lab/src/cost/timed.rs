@@ -16,7 +16,7 @@ use mode13h::vga::Vga;
 /// Frames after which every error has been tried.
 const CALIBRATION: usize = 48;
 
-/// Fewest and most frames timed for one time.
+/// The minimum and maximum number of frames that are timed for one time limit.
 const FRAMES: (usize, usize) = (200, 20_000);
 
 /// Number of times that a study chooses errors for.

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `face` | a triangle at the pixel: its corners, its edges, who owns a tie, its fate |
-//! | `pixel` | [`pixel()`]: everything about one |
+//! | `pixel` | [`pixel()`]: everything about one pixel |
 //! | `trace`, `one_pixel` | the triangles at the pixel, and which is seen; its byte, stage by stage |
 //! | `text`, `span_text`, `paragraph` | the explanation in words |
 //! | `registers` | [`Registers`]: what the loop of 1994 holds at a pixel |

@@ -14,7 +14,7 @@ use mode13h::plan::FaceShading;
 use mode13h::raster::Interpolation;
 use mode13h::settings::Shading;
 
-/// The most triangles listed.
+/// The maximum number of triangles listed.
 const LISTED: usize = 6;
 
 impl fmt::Display for Pixel {
@@ -125,8 +125,8 @@ impl Pixel {
             (ShadedBy::BetweenSix(corners), _) => {
                 let shades = |first: usize| corners.map(|of| format!("{:.2}", of[first] / 256.0)).join(", ");
                 let words = format!(
-                    "quadratic on the screen through light at six points: {} at the corners, {} at the middles of the \
-                     edges opposite to them, where light above 1 or below the horizon is continued, and clamped here",
+                    "quadratic on the screen through light at six points: {} at the corners, {} at the midpoints of \
+                     the opposite edges; light continues above 1 and below the horizon, and is clamped here",
                     shades(0),
                     shades(3),
                 );
@@ -194,7 +194,7 @@ impl Pixel {
             text.row("", &format!("{name} {x:>8}  {y:>8}  {at:>20}  {shade:>14}  {:>12}", corner.depth()));
         }
         if !seen.exact_cover {
-            let words = "on whole pixels, from Ax to the last before Bx in each row: no edge functions, no exact cover";
+            let words = "on whole pixels, from Ax to the last before Bx in each row: no edge functions, no exact coverage";
             return text.say("cover", words);
         }
         for (name, edge) in ["A to B", "B to C", "C to A"].iter().zip(face.edges(self.x, self.y)) {

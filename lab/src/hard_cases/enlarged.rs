@@ -51,8 +51,8 @@ impl Enlarged {
         fill(&mut frame.clipped(&self.area()), self.corner(x, y) + middle, 2, index);
     }
 
-    /// Draws the parts of true edges that lie within, one pixel thick. Their ends are in pixels of the enlarged frame,
-    /// relative to the upper left corner of this part.
+    /// Draws true edges one pixel thick, clipped to this part. Their ends are in pixels before enlargement, relative to
+    /// the upper left corner of the part.
     pub(super) fn edges(&self, frame: &mut Frame<'_>, outline: &[Segment], index: Index) {
         let style = PrimitiveStyle::with_stroke(index, 1);
         let size = (f64::from(self.columns), f64::from(self.rows));

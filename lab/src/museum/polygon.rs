@@ -7,8 +7,8 @@
 //!
 //! The caller provides the table: one [`TableRow`] for every row of the frame, 200 in mode 13h.
 //!
-//! Cover is exact, by the same rule as a triangle's. A crossing's x is rounded up to 1/256 pixel, which never loses a
-//! pixel centre, because centres lie on whole units. The row runs from the first centre at or right of the left
+//! Coverage is exact, by the same rule as a triangle's. A crossing's x is rounded up to 1/256 pixel, which never loses
+//! a pixel centre, because centres lie on whole units. The row runs from the first centre at or right of the left
 //! crossing to the last one left of the right crossing. Polygons and triangles that share edges therefore draw each
 //! pixel once.
 //!

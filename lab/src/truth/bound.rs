@@ -8,20 +8,20 @@ use mode13h::settings::Shading;
 /// | shading | standard | largest error, in shades | sources beyond the byte's ½ and the vertices' 1/512 |
 /// |---|---|---|---|
 /// | `flat` | – | – | has one shade of its own: see below |
-/// | `gouraud-vintage` | – | – | other vertices, other cover |
+/// | `gouraud-vintage` | – | – | different vertices, different coverage |
 /// | `gouraud-8.8` | `gouraud` | ½ + 1/512 + w/256 in a frame of w columns: 1.75 for 320 | start and steps, each less than 1/256 |
 /// | `gouraud-8.8-reseeded` | `gouraud` | ½ + 1/512 + ¼ | the same over 64 pixels |
 /// | `gouraud-16.16` | `gouraud` | ½ + 1/512 + w/65,536 | start and steps, each less than 1/65,536 |
 /// | `gouraud-hyperbolic` | `gouraud-perspective` | ½ + 1/512 + 1/256 | depths rounded to 2⁻³⁰ of the nearest |
-/// | `gouraud-tessellated` | – | – | edges are split by an estimate, six times at most; faces inside by none |
+/// | `gouraud-tessellated` | – | – | edges are split by an estimate, at most six times; nothing estimates the inside of a face |
 /// | `phong-table` | – | – | normals linear on the screen and in 256 steps, lamps as suns, the eye far away |
 /// | `phong` | `lit` | ½ + 1/512 + 1/100 | normals and positions in f32 |
 /// | `gouraud-float` | `gouraud-perspective` | ½ + 1/512 + 1/256 + 1/8,192 | the same, and f32 |
 ///
 /// A vertex's shade is rounded to 1/256, so it is off by 1/512; a shade interpolated from vertices is a weighted mean
 /// of three, and no farther off. The rasterizer adds the rest ([`Interpolation`](mode13h::raster::Interpolation)). A
-/// depth is rounded to half a unit of 2⁻³⁰·near/w: for w up to 4,096 times the near distance that is a share of 2⁻¹⁹,
-/// either way, and a quotient of sums with that error is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to
+/// depth is rounded to half a unit of 2⁻³⁰·near/w: for w up to 4,096 times the near distance that is a relative error
+/// of 2⁻¹⁹, and a quotient of sums with that error is off by 2⁻¹⁸ of 255 shades: 1/1,000, and less than 1/256 up to
 /// 10,000 times the near distance.
 ///
 /// This holds for the truth's vertices. The engine's vertices come from f32, so one coordinate in a hundred is rounded

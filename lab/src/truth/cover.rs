@@ -1,4 +1,4 @@
-//! Cover of a face whose corners are rounded to 1/256 pixel, computed exactly in integers.
+//! Coverage of a face whose corners are rounded to 1/256 pixel, computed exactly in integers.
 
 use super::body::Corner;
 use super::clip::{Kept, clip, fan};

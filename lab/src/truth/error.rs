@@ -1,7 +1,7 @@
 //! Errors of a frame against the truth.
 //!
 //! The unit is the shade, 1/255 of full intensity, whatever ramp a picture is shown in. Shades are compared where truth
-//! and frame show the same face; every other pixel is counted separately, as an error of cover or of visible surface.
+//! and frame show the same face; every other pixel is counted separately, as an error in coverage or visibility.
 //! With three channels the one that is farthest off counts.
 
 use super::{Face, TruePixel, TruthFrame};

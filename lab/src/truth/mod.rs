@@ -11,7 +11,7 @@
 //! | [`GouraudUnrounded`](Standard::GouraudUnrounded) | unrounded | linear on the screen | of vertex rounding too |
 //! | [`Lit`](Standard::Lit) | unrounded | the whole lighting model at the pixel | of the model too |
 //!
-//! **Cover.** A pixel shows a face if its centre lies inside, or on a top or left edge. With rounded vertices
+//! **Coverage.** A pixel shows a face if its centre lies inside, or on a top or left edge. With rounded vertices
 //! (floor(256·x + ½), as in the engine) that is decided exactly, in integers; with unrounded vertices, by the ray from
 //! the eye through the centre, to the precision of f64, some 10⁻¹² pixel.
 //!
@@ -380,7 +380,7 @@ impl<'a> Truth<'a> {
         });
     }
 
-    /// The hit on a face with unrounded vertices at the centre of a pixel, if it covers it.
+    /// The hit on a face with unrounded vertices at the centre of a pixel, if the face covers that.
     fn unrounded_hit(&self, standard: Standard, face: Face, corners: &[Corner; 3], x: i64, y: i64) -> Option<Hit> {
         let centre = [x as f64 + 0.5, y as f64 + 0.5];
         let mut hit = self.met(face, centre)?;
@@ -435,7 +435,7 @@ impl<'a> Truth<'a> {
     }
 }
 
-/// A triangle of a face with rounded vertices at the centre of a pixel, if it covers it.
+/// The hit on a part of a face with rounded vertices at the centre of a pixel, if the part covers that.
 fn part_hit(standard: Standard, (face, turned): (Face, bool), part: &cover::Part, x: i64, y: i64) -> Option<Hit> {
     let on_part = part.weights(x, y)?;
     // A value linear on the face becomes linear on the screen when divided by w.

@@ -1,5 +1,5 @@
-//! Rays from the eye through a point of the picture, and the faces that they hit: cover without any rounding to pixels
-//! or fractions of them.
+//! Rays from the eye through a point of the picture, and the faces that they hit: coverage without any rounding to
+//! pixels or fractions of them.
 //!
 //! With a, b, c the corners before their division and p = (x, y, 1) on the screen, the corners' weights on the face are
 //! the volumes of the three tetrahedra that p forms with two of them each. No clipping is needed: a corner behind the

@@ -19,7 +19,7 @@ use crate::raster::vertex::Vertex;
 /// The vertices and attributes of a face's corners. Their order and winding do not matter.
 pub type EffectFace = ([Vertex; 3], [Attributes; 3]);
 
-/// The most faces that are culled and drawn together.
+/// The maximum number of faces that are culled and drawn together.
 const CAPACITY: usize = CHUNK;
 
 /// Faces drawn by one pixel pipeline, and the memory for drawing faces. Refilling and redrawing it allocates nothing.
@@ -95,7 +95,7 @@ fn in_range(value: U8F8) -> U8F8 {
 }
 
 impl EffectBatch {
-    /// The most faces that a batch can hold.
+    /// The maximum number of faces that a batch can hold.
     pub const CAPACITY: usize = CAPACITY;
 
     /// An empty batch. Its first drawing allocates 120 kB.

@@ -29,7 +29,7 @@ const GREATEST: f32 = 16_777_216.0;
 #[derive(Clone, Copy, Debug, Default)]
 struct Curve {
     corners: [f64; 3],
-    /// 2D of the edge opposite each corner.
+    /// Twice D, for the edge opposite each corner.
     bends: [f64; 3],
     /// Change of the linear part from one pixel to the next, and c.
     step: f64,

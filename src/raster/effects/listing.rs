@@ -167,7 +167,7 @@ pub(super) struct SpanData {
     pub(super) numbers: RecordColumns<i32, NUMBERS>,
     pub(super) coordinates: RecordColumns<i32, COORDINATES>,
     sums: RecordColumns<i64, SUMS>,
-    /// The sums rounded to f32; not of a face that is walked.
+    /// The sums rounded to f32; unused for a face that is walked.
     single_sums: RecordColumns<f32, SINGLE_SUMS>,
     /// Made on the heap, since stacks may be small.
     planes: Box<[FacePlanes8; Batches::COUNT]>,
@@ -346,7 +346,7 @@ pub(in crate::raster) struct EffectSpans<'a> {
 }
 
 impl<'a> EffectSpans<'a> {
-    /// No spans yet, of these faces.
+    /// Begins without spans; they will be of these faces.
     pub(super) fn new(
         faces: PickedTriangles<'a>,
         pipeline: &'a PixelPipeline<'a>,

@@ -11,7 +11,7 @@ use crate::span::dither::{ThresholdRow, Thresholds};
 use crate::span::lit::{self, Numerators};
 use crate::span::{Kernel, PIECE};
 
-/// The most lit pixels in a partly lit span, its end included, rounded up to whole vectors.
+/// The maximum number of lit pixels in a partly lit span, its end included, rounded up to whole vectors.
 const KNOTS: usize = (PIECE / SampleSpacing::Four.pixels() + 1).next_multiple_of(LANES);
 
 /// The shade, or three channels, at eight points.

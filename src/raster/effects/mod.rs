@@ -119,7 +119,7 @@ struct Buffers {
 }
 
 impl Buffers {
-    /// Makes room for the most pixels there can be.
+    /// Makes room for the maximum number of pixels.
     fn make_room(&mut self) {
         let Self { bytes, other, channels, shades } = self;
         for bytes in [bytes, other].into_iter().chain(channels) {

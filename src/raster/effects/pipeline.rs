@@ -44,7 +44,7 @@ pub enum ShadeSource<'a> {
     Curved([Limits; 3]),
 }
 
-/// The least and the greatest value of a shade.
+/// The minimum and maximum of a shade.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Limits {
     /// The least.
@@ -149,7 +149,7 @@ impl<'a> Image<'a> {
     }
 }
 
-/// At least the number of an image's levels, level 0 included; a power of two, so that a mask keeps indices in range.
+/// An upper bound on an image's levels, level 0 included; a power of two, so that a mask keeps indices in range.
 pub(super) const LEVELS: usize = 16;
 const _: () = assert!((Texels::MAX_BITS as usize) < LEVELS);
 

@@ -19,7 +19,7 @@ use crate::span::list::{self, SpanDepths, SpanList};
 use crate::span::target::SpanDepth;
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
 
-/// The most pixels that pass through the stages together, and the room for them when written eight at a time.
+/// The maximum number of pixels that pass through the stages together, and room for writing them eight at a time.
 pub(super) const PIXELS: usize = 4_096;
 pub(super) const ROOM: usize = PIXELS + LANES;
 
@@ -48,7 +48,7 @@ pub(super) struct Span {
     /// The column and the row of its first pixel, which the clip rectangle may hide.
     pub(super) x: i32,
     pub(super) y: i32,
-    /// Where its pixels begin among those of all spans.
+    /// The index of its first pixel among those of all spans.
     pub(super) first: usize,
     /// Number of its pixels, hidden ones included: 1 to 64.
     pub(super) len: usize,

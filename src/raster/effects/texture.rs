@@ -492,7 +492,7 @@ mod tests {
     use crate::span::texture::Levels;
     use crate::span::texture::PerspectiveSums;
 
-    /// In place of offsets that quotients cannot decide: no decided one, shifted right by 16 bits or more, has this value.
+    /// Stands for an offset that quotients cannot decide. No decided one, shifted right by 16 bits or more, equals it.
     const UNDECIDED: i32 = i32::MIN;
 
     /// The definition in big integers: Σ λᵢ·uᵢ / (A·2ⁿ), rounded up where coordinates fall, down where they rise.

@@ -23,8 +23,8 @@ use crate::render::surface_material::SurfaceMaterial;
 use crate::simd::compiled_for_each_level;
 use crate::span::Kernel;
 
-/// Least number of pixels for each point of the finer grids that makes them worthwhile. (The spheres of `phong` within
-/// 2 shades take 1.04 of that shading's time at 10, 0.99 at 5, 0.95 at 3; a failed attempt costs more on a finer
+/// The finer grids are tried on faces with at least this many pixels for each of their points. (The spheres of `phong`
+/// within 2 shades take 1.04 of that shading's time at 10, 0.99 at 5, 0.95 at 3; a failed attempt costs more on a finer
 /// grid.)
 const PIXELS_A_POINT: f32 = 4.0;
 
@@ -124,7 +124,7 @@ impl OnScreen<'_> {
 #[derive(Clone, Copy, Default)]
 struct Quadratic {
     corners: [f32; 3],
-    /// 2D of the edges opposite the corners.
+    /// Twice the second differences along the edges opposite the corners.
     bends: [f32; 3],
 }
 

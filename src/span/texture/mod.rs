@@ -43,7 +43,7 @@ pub struct Texels<'a> {
 }
 
 impl<'a> Texels<'a> {
-    /// The most bits that u or v may have: 256 texels.
+    /// The maximum number of bits of u or v: 256 texels.
     pub const MAX_BITS: u32 = 8;
 
     /// A single texel.

@@ -9,7 +9,7 @@
 //! | `settings` | settings as lines of text |
 //! | `report` | plan, counts and the explanation of a pixel as JSON |
 //! | `kit` | the span loop and triangles, for the figures of the text |
-//! | `turntable` | the program's own file: a scene at a time, seen as the user turned it |
+//! | `turntable` | the program's own file: a scene at a given time, seen as the user turned it |
 
 mod kit;
 mod report;
@@ -90,7 +90,7 @@ extern "C" fn answer() -> *const u8 {
     ANSWER.with_borrow(|said| said.as_ptr())
 }
 
-/// Bytes of the last answer.
+/// The length of the last answer, in bytes.
 #[unsafe(no_mangle)]
 extern "C" fn answer_length() -> usize {
     ANSWER.with_borrow(Vec::len)
@@ -169,7 +169,7 @@ extern "C" fn show(stage: usize, seconds: f64, turn: f64, tilt: f64, zoom: f64) 
     on(stage, |stage| stage.show(seconds, Pose { turn, tilt, zoom }).map(|()| Vec::new()))
 }
 
-/// Draws a frame, `again` even where nothing has changed since the last.
+/// Draws a frame; with `again`, even if nothing has changed since the last one.
 #[unsafe(no_mangle)]
 extern "C" fn draw(stage: usize, again: bool) -> bool {
     on(stage, |stage| stage.draw(again).map(|()| Vec::new()))
@@ -224,7 +224,7 @@ extern "C" fn png(stage: usize) -> bool {
     on(stage, |stage| stage.png())
 }
 
-/// Adds frame `number` of an animation of `frames`, which is one round. The answer to the last one is the GIF file.
+/// Adds frame `number` of an animation of `frames`, which is one loop. The answer to the last one is the GIF file.
 #[unsafe(no_mangle)]
 extern "C" fn film(stage: usize, number: u32, frames: u32) -> bool {
     on(stage, |stage| stage.film(number, frames))

@@ -27,7 +27,7 @@ pub(super) struct Buffers {
     pub(super) images: Vec<Image>,
 }
 
-/// The most rows of an accessor without a buffer view. They are 0, and a short file may ask for any number.
+/// The maximum number of rows of an accessor without a buffer view: all zeros, so a short file may ask for any number.
 const MAX_ZEROS: usize = 1 << 20;
 
 impl Buffers {

@@ -76,8 +76,8 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
     Ok((Document::from_json_without_validation(root), binary))
 }
 
-/// Parses JSON. `gltf` wants every channel of an animation to name a node; the specification does not, and one without,
-/// which moves what an extension says, is left out.
+/// Parses JSON. `gltf` requires each channel of an animation to name a node, which the specification does not. Channels
+/// without a node, whose target only an extension gives, are left out.
 fn parsed(text: &[u8]) -> Result<json::Root, json::Error> {
     let error = match json::Root::from_slice(text) {
         Err(error) if error.to_string().starts_with("missing field `node`") => error,

@@ -25,12 +25,12 @@ pub(super) struct Mapping {
     offset: [f64; 2],
     scale: [f64; 2],
     rotation: f64,
-    /// Whether the texture's edge continues beyond it in u and in v, instead of the texture.
+    /// Whether the sampler clamps to the edge in u and in v; otherwise the texture repeats.
     clamps: [bool; 2],
 }
 
-/// How far beyond 0 to 1 coordinates may be before they count as outside: sixteen roundings of an f32 near 1, of which
-/// a few add up where exporters scale or move coordinates, and 1/4096 texel of the largest texture, which no one sees.
+/// How far beyond 0 to 1 coordinates may be before they count as outside: sixteen rounding errors of an f32 near 1, as
+/// exporters that scale or move coordinates accumulate a few. In the largest texture that is 1/4096 texel: invisible.
 const ROUNDING: f64 = 1.0 / (1 << 20) as f64;
 
 impl Mapping {
@@ -88,21 +88,21 @@ impl Shade {
 pub(super) struct Materials<'a> {
     path: &'a Path,
     buffers: &'a Buffers,
-    /// Reads a picture beside the file.
+    /// Reads a picture in a separate file, by its path.
     file: &'a mut dyn FnMut(&Path) -> io::Result<Vec<u8>>,
     pub(super) surfaces: Vec<Surface>,
     /// The painted copy of each surface that has one: the same material with the colours of faces.
     pub(super) painted: HashMap<usize, usize>,
     pub(super) textures: Embedded,
     pub(super) left_out: LeftOut,
-    /// Whether one of them should be fully transparent. It is drawn opaque.
+    /// Whether some surface should be fully transparent. It is drawn opaque.
     pub(super) has_unseen: bool,
     known: HashMap<Option<usize>, (usize, Mapping, Shade)>,
     /// The images read so far: the texture, and whether some of it was not opaque.
     images: HashMap<usize, Option<(Shared<Texture>, bool)>>,
 }
 
-/// The exponent of a highlight that is a point.
+/// The exponent at which a highlight is no more than a point.
 const MAX_SHININESS: f64 = 1000.0;
 
 impl<'a> Materials<'a> {
@@ -235,7 +235,7 @@ impl<'a> Materials<'a> {
         Some(name)
     }
 
-    /// The texture of an image in the file or beside it, and whether some of it was not opaque.
+    /// The texture of an image, inside the file or separate, and whether some of it was not opaque.
     fn image(&mut self, index: usize) -> Option<(Shared<Texture>, bool)> {
         let buffers = self.buffers;
         let file = &mut self.file;

@@ -6,7 +6,7 @@
 //! | triangles, strips and fans, with indices or without | faces; points and lines are ignored |
 //! | `POSITION`, `NORMAL`, `TEXCOORD_n`, `COLOR_0` in any type of number, sparse or not | positions, normals, texture coordinates; a colour for each face without a texture, up to 256 in all |
 //! | materials | surfaces, by the rules below |
-//! | images in the file, as data URIs and beside it | textures, placed by `KHR_texture_transform` |
+//! | images in the file, as data URIs and in separate files | textures, placed by `KHR_texture_transform` |
 //! | skins: joints, inverse bind matrices, `JOINTS_n` and `WEIGHTS_n` | the mesh at rest, as posed by the joints, and a [`Rig`](rig::Rig) |
 //! | animations of translation, rotation and scale | clips of the rig |
 //! | `KHR_lights_punctual` | suns, lamps and spot lights, by the rule in `rig/stage.rs` |
@@ -17,7 +17,7 @@
 //!
 //! **Materials.** With base colour b (in sRGB, like all factors here), metallic factor m and roughness r:
 //!
-//! | of the surface | is |
+//! | property of the surface | value |
 //! |---|---|
 //! | diffuse | b · (1 − m·(1 − r)/2): a smooth metal is darker, as it does not mirror its surroundings here; a rough one keeps b |
 //! | specular | (1 − r) · ((1 − m)·0.22 + m·b); 0.22 is 4 % in sRGB |
@@ -26,8 +26,8 @@
 //! | texture | that of the base colour |
 //!
 //! A metallic-roughness texture is replaced by its means. Emission is added to the diffuse colour; an emissive texture
-//! is shown where the base colour is black and has no texture. Unlit materials are matt. Colours of vertices multiply
-//! the base colour where it is diffuse, and leave the rest of the material. Textures repeat: a sampler that clamps
+//! is shown where the base colour is black and has no texture. Unlit materials are matt. Vertex colours multiply the
+//! diffuse part of the base colour, and leave the rest of the material unchanged. Textures repeat: a clamping sampler
 //! causes a warning if coordinates leave the texture.
 
 mod accessor;
@@ -58,7 +58,7 @@ pub(crate) use container::recognizes;
 use material::Materials;
 use skin::Skins;
 
-/// The most triangles of all nodes together: a mesh may be used by many nodes, so a small file may be a large model.
+/// The maximum number of triangles of all nodes: many nodes may use a mesh, so a small file may be a large model.
 const MAX_TRIANGLES: usize = 1 << 26;
 
 /// Reads a file, the buffers that it names, and the pictures whose means are needed.

@@ -1,4 +1,4 @@
-//! Animations: the keys of nodes.
+//! Animations: keyframes for nodes.
 
 use ::gltf::animation::{Interpolation as Way, Property as Path};
 use ::gltf::{Animation, Document};
@@ -23,11 +23,11 @@ pub(super) fn read(
     Ok(clips)
 }
 
-/// The most times and values of all animations together: samplers may share accessors, so a small file could ask for
-/// any amount of memory.
+/// The maximum number of times and values of all animations: samplers may share accessors, so a small file could ask
+/// for any amount of memory.
 const MOST_KEYS: usize = 1 << 24;
 
-/// One animation; `None` if it moves no node. There is room for this many more keys.
+/// One animation; `None` if it moves no node. `room` is the number of keys that may still be added.
 fn clip(
     animation: &Animation<'_>,
     buffers: &Buffers,

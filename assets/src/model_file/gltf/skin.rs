@@ -55,7 +55,7 @@ impl Skins {
     }
 }
 
-/// The most lists of four joints that a vertex may have.
+/// The maximum number of lists of four joints per vertex.
 const SETS: u32 = 8;
 
 /// The joints of the vertices of a skinned primitive, and their weights, which add up to 1. `None` if it names none.

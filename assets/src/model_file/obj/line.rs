@@ -7,7 +7,7 @@ use std::str::FromStr;
 use crate::model_file::ModelFileErrorKind;
 use crate::model_file::word::parsed;
 
-/// The most bytes of a line, joined ones together: a device or a small packed file may have no line ending at all.
+/// The maximum length of a line in bytes, after joining: a device or a small packed file may have no line ending.
 const LONGEST: usize = 1 << 26;
 
 /// A line reader that joins lines ending in a backslash. LF, CR LF and CR end a line. A single buffer is reused.

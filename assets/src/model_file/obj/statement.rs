@@ -186,7 +186,7 @@ struct Later {
 const WHAT: [&str; 3] = ["vertex", "texture coordinate", "normal"];
 
 impl Later {
-    /// Converts an index to count from 0. `count`: how many entries there are so far.
+    /// Converts an index to one that counts from 0. `count` is the number of entries so far.
     fn resolve(&mut self, kind: usize, index: i64, count: usize, line: u64) -> Result<u32, ModelFileErrorKind> {
         // `count` is at most `Mesh::MAX_COUNT`, see `push`.
         let from_zero = match index {

@@ -104,7 +104,7 @@ pub(super) struct Header {
     pub(super) lines: u64,
 }
 
-/// The most elements, and properties of an element, so that no property list takes for ever.
+/// The maximum number of elements, and of properties per element, so that no property list takes for ever.
 const MAX: usize = 1_000;
 
 impl Header {

@@ -66,7 +66,7 @@ type Done = Result<(), ModelFileErrorKind>;
 /// Data of the elements in addition to positions, normals and faces.
 #[derive(Default)]
 struct Reading {
-    /// The number of vertices that the header announces.
+    /// The number of vertices that the header declares.
     vertices: u64,
     /// The colour of each vertex, or empty.
     of_vertices: Vec<Rgb>,
@@ -198,7 +198,7 @@ impl Reading {
         Ok(())
     }
 
-    /// The surface for a `texnumber`. The one after those of all textures has none.
+    /// The surface for a `texnumber`. The last surface, after those of the textures, has no texture.
     fn surface(&self, number: f64) -> usize {
         let is_texture = number >= 0.0 && number < self.textures as f64 && number.fract() == 0.0;
         if is_texture { number as usize } else { self.textures }
@@ -265,7 +265,7 @@ impl Reading {
         }
     }
 
-    /// Adds a surface for each texture, and one without for faces whose `texnumber` is of none.
+    /// Adds a surface for each texture, and one without a texture for faces whose `texnumber` names none.
     fn add_textures(&self, header: &Header, path: &Path, draft: &mut Draft) {
         let folder = path.parent().unwrap_or(Path::new(""));
         let with_texture = |(_, name): &(u64, String)| {
@@ -282,7 +282,7 @@ impl Reading {
             let (shown, count) = (path.display(), self.textures);
             draft
                 .warnings
-                .push(|| format!("{shown}:{line}: no texnumber of faces; drawn with the first of {count} textures"));
+                .push(|| format!("{shown}:{line}: faces have no texnumber; drawn with the first of {count} textures"));
         }
     }
 }

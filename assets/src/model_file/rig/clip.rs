@@ -9,7 +9,7 @@ use crate::model_file::word::shown;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip {
     pub(super) name: String,
-    /// The last key, in seconds.
+    /// The time of the last key, in seconds.
     pub(super) duration: f64,
     pub(super) samplers: Vec<Sampler>,
     pub(super) channels: Vec<Channel>,
@@ -108,7 +108,7 @@ pub(crate) struct Sampler {
 }
 
 impl Sampler {
-    /// The value at a time. Before the first key it is that of the first, after the last that of the last.
+    /// The value at a time: before the first key that key's value, and after the last key that one's.
     pub(super) fn at(&self, seconds: f64) -> [f64; 4] {
         let next = self.times.partition_point(|&time| f64::from(time) <= seconds);
         let is_spline = self.interpolation == Interpolation::CubicSpline;

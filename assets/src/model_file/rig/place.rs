@@ -9,12 +9,12 @@ pub(crate) struct Placement([Wide; 4]);
 impl Placement {
     pub(crate) const NONE: Self = Self([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0; 3]]);
 
-    /// The transform of a matrix by columns, whose last row is 0, 0, 0, 1 by definition.
+    /// The transform given by a column-major matrix, whose last row is 0, 0, 0, 1 by definition.
     pub(crate) fn of_matrix(columns: [[f32; 4]; 4]) -> Self {
         Self(columns.map(|[x, y, z, _]| [x, y, z].map(f64::from)))
     }
 
-    /// The transform of a matrix by columns in f64.
+    /// The transform given by a column-major matrix in f64.
     pub(crate) fn of_columns(columns: [[f64; 4]; 4]) -> Self {
         Self(columns.map(|[x, y, z, _]| [x, y, z]))
     }
@@ -48,7 +48,7 @@ impl Placement {
         self.0[3]
     }
 
-    /// The unit image of an axis; `None` if it has no direction.
+    /// The image of an axis, normalised; `None` if it has no direction.
     pub(crate) fn axis(self, axis: usize) -> Option<Wide> {
         let length = libm::sqrt(dot(self.0[axis], self.0[axis]));
         (length > 0.0 && length.is_finite()).then(|| self.0[axis].map(|c| c / length))
@@ -76,13 +76,13 @@ impl Placement {
         dot(x, cross(y, z)) < 0.0
     }
 
-    /// The normal of a placed surface, of any length: by the inverse's transpose, times the determinant's size.
+    /// The normal of a placed surface, of any length: by the inverse transpose, times the determinant's absolute value.
     pub(crate) fn normal(self, normal: Wide) -> Wide {
         let sign = if self.mirrors() { -1.0 } else { 1.0 };
         self.area(normal).map(|c| sign * c)
     }
 
-    /// The area vector of a placed face: by the inverse's transpose, times the determinant. It follows the order of the
+    /// The area vector of a placed face: by the inverse transpose, times the determinant. It follows the order of the
     /// face's corners, so it points inward if the transform mirrors.
     pub(crate) fn area(self, area: Wide) -> Wide {
         let [x, y, z, _] = self.0;

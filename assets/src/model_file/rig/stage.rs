@@ -2,8 +2,8 @@
 //!
 //! **Range.** The light of a lamp falls off by the inverse square of the distance, without end; the engine's by
 //! (1 − d²/R²)², up to its range R. Both have the same value and the same slope at R/√3, so R is √3 times the lamp's distance
-//! from the middle of the model; or, for a lamp beside or inside it, as much as reaches all of it. A range in the file limits
-//! it. The intensity at the lamp is then 27/4 · I/R².
+//! from the middle of the model; or, for a lamp close to or inside it, large enough to reach all of it. A range in the
+//! file limits it. The intensity at the lamp is then 27/4 · I/R².
 //!
 //! **Exposure.** Files give lux and candela, or whatever their program takes these to be. So all lights are exposed
 //! together, as by a camera's automatic exposure: a white surface in the middle of the model that faced each of them
@@ -73,7 +73,7 @@ fn narrow(v: Wide) -> Vec3 {
     Vec3::from_array(v.map(|c| c as f32))
 }
 
-/// The lights, and for each the index of its source. A light without a place, or whose numbers exceed f32, is left out.
+/// The lights, each with the index of its source. One that has no position, or whose numbers exceed f32, is left out.
 pub(super) fn lights(
     sources: &[Source],
     stand: impl Fn(usize) -> Option<Stand>,
@@ -163,7 +163,7 @@ pub(super) fn camera(eye: &Eye, stand: Stand, bounds: &Bounds) -> Option<Camera>
     is_sound.then_some(Camera { eye: position, target, up, field_of_view, near })
 }
 
-/// Moves the camera to where its node is, if f32 can hold it. It looks as far as before.
+/// Moves the camera to where its node is, if f32 can hold that. Its target stays at the same distance.
 pub(super) fn looking(camera: Camera, stand: Stand) -> Camera {
     let (Some(eye), Some(towards), Some(up)) = (stand.position(), stand.place.axis(2), stand.axis(1)) else {
         return camera;

@@ -17,7 +17,7 @@ pub(super) fn section(study: &Study, chart: impl FnOnce() -> Markup) -> Markup {
             p {
                 "Each face is drawn by the cheapest shading that stays within the accepted error, judging by a bound from normals, lights and vertices; "
                 "times include this decision. The promise: every covered pixel is within the budget of lit. The aim: at most 5 % slower than the cheapest "
-                "single shading with exact cover that keeps the same promise."
+                "single shading with exact coverage that keeps the same promise."
             }
             (chart())
             (table(study).html())

@@ -257,7 +257,7 @@ fn key(root: &Area<'_>, no_budget: bool) -> Outcome {
     let y = 18;
     root.draw(&PathElement::new([(80, y), (104, y)], SHADINGS.stroke_width(2)))?;
     root.draw(&Circle::new((92, y), 5, SHADINGS.filled()))?;
-    root.draw(&Text::new("efficient shadings: none as accurate is surely faster", (112, y), style.clone()))?;
+    root.draw(&Text::new("efficient shadings: none as accurate is measurably faster", (112, y), style.clone()))?;
     root.draw(&Circle::new((440, y), 4, BEATEN.stroke_width(2)))?;
     root.draw(&Text::new("other shadings", (452, y), style.clone()))?;
     if !no_budget {

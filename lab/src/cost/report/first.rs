@@ -1,4 +1,4 @@
-//! The first screen: flat shading beside the most accurate shading, how many times the time that takes, and the curve.
+//! The first screen: flat shading next to the most accurate one, the ratio of their times, and the curve.
 
 use maud::{Markup, html};
 use mode13h::settings::Shading;
@@ -42,7 +42,7 @@ fn ends(study: &Study) -> Option<[&ShadingRow; 2]> {
     (cheap.shading != near.shading).then_some([cheap, near])
 }
 
-/// How many times as long the right one takes, in the form the web page uses.
+/// How many times as long the right-hand shading takes, in the form that the web page uses.
 fn price(cheap: &ShadingRow, near: &ShadingRow) -> [String; 2] {
     match times(near, cheap) {
         Some(times) if times.is_finite() && times > 0.0 => [format!("{} ×", brief(times)), "the time →".into()],

@@ -28,8 +28,8 @@ pub(super) fn section(study: &Study) -> Markup {
                 "95 % of what resampling the rounds gives (bootstrap). Where it contains 1, the two may well be equal."
             }
             p {
-                "All shadings share one path, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ by what they do at pixels "
-                "and by their planes. Two take a path of their own: gouraud-vintage is drawn triangle by triangle, and gouraud-tessellated splits faces first; phong-table and phong pass "
+                "All shadings share one path, so set-up is the same work for each: faces are culled, set up and listed as spans by the same code, and they differ in what they do at pixels "
+                "and in their planes. Two take a path of their own: gouraud-vintage is drawn triangle by triangle, and gouraud-tessellated splits faces first; phong-table and phong pass "
                 "their spans through the stages of effects. Spans are separated from set-up by a frame of the same scene that is twice as wide."
             }
             p {

@@ -126,7 +126,7 @@ pub(super) fn errors(study: &Study) -> Table {
         .page_note("R.m.s. of 4 × 4: of the means over blocks, where dither earns its keep.")
         .page_note("Palette adds: what the nearest entry of the scene’s ramp or palette is off by, at most.")
         .note("Swim: how much errors change from one frame to the next over a turn of 0.25°, r.m.s.; the eye sees it as crawling.")
-        .note("Cover errors: pixels over all frames that show a different face than they should, with equally rounded vertices.")
+        .note("Cover errors: pixels over all frames that show a different face than they should, with vertices rounded the same way.")
         .note("Not compared: the share of covered pixels that show another face than lit does; no error is taken there.")
 }
 

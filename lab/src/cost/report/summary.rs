@@ -41,7 +41,7 @@ fn model(linear: &ShadingRow, phong: Option<&ShadingRow>) -> String {
     let Some(phong) = phong else {
         return match left {
             left if left.is_finite() => {
-                format!("It is off from light at every pixel by up to {}.", counted_shades(&at_most(left)))
+                format!("It differs from light at every pixel by up to {}.", counted_shades(&at_most(left)))
             }
             _ => "How far it is from light at every pixel is not known.".to_string(),
         };
@@ -72,7 +72,7 @@ fn of_others(study: &Study) -> [String; 2] {
         return [format!("On {} no shading was measured.", study.input), "So there is nothing to compare.".to_string()];
     };
     let first = format!(
-        "On {} the fastest shading measured is {}: off from light at every pixel by at most {}, in {} a frame.",
+        "On {} the fastest shading measured is {}: within {} of light at every pixel, in {} per frame.",
         study.input,
         fastest.shading,
         of_shades(fastest.error_lit.max),

@@ -156,7 +156,7 @@ fn a_report_is_well_formed_and_says_everything() {
     assert_eq!(title, Some("What accuracy costs: <torus & \"cone\">'s"));
     let text: String = document.descendants().filter(|n| n.is_text()).filter_map(|n| n.text()).collect();
     for part in [
-        "there is no aim of time",
+        "there is no time to aim for",
         "The time for a frame",
         "1\u{2009}200",
         "No measurable difference in time",
@@ -338,7 +338,7 @@ fn a_summary_is_true_of_any_figures() {
         (
             vec![tied(shading(GouraudVintage, 1.01, 9.0, 12.0), Gouraud88Reseeded), done_right()],
             "On torus the old loop, done right, is within 0.6 of 255 shades of exact and as fast as the printed one, as \
-             far as can be told. It is off from light at every pixel by up to 14.6 shades.",
+             far as can be told. It differs from light at every pixel by up to 14.6 shades.",
         ),
         (
             vec![shading(Gouraud88Reseeded, 1.0, 0.0, 0.0), shading(Phong, 5.0, 0.0, 0.0)],
@@ -362,13 +362,13 @@ fn a_summary_is_true_of_any_figures() {
         ),
         (
             vec![shading(Flat, 1.0, 9.0, 28.0), shading(Phong, 5.0, 0.0, 0.5)],
-            "On torus the fastest shading measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
-             a frame. The nearest is phong: off by at most 0.5 shades; it takes 5 times as long as that.",
+            "On torus the fastest shading measured is flat: within 28 shades of light at every pixel, in 100 µs \
+             per frame. The nearest is phong: off by at most 0.5 shades; it takes 5 times as long as that.",
         ),
         (
             vec![shading(Flat, 1.0, 9.0, 28.0)],
-            "On torus the fastest shading measured is flat: off from light at every pixel by at most 28 shades, in 100 µs \
-             a frame. No other shading measured is nearer.",
+            "On torus the fastest shading measured is flat: within 28 shades of light at every pixel, in 100 µs \
+             per frame. No other shading measured is nearer.",
         ),
         (Vec::new(), "On torus no shading was measured. So there is nothing to compare."),
     ];

@@ -1,4 +1,4 @@
-//! Cover: R1, R3 to R6, R8, R11, R13.
+//! Coverage: R1, R3 to R6, R8, R11, R13.
 
 use super::{EXACT, against_engine, each_against_engine, in_greys};
 use crate::hard_cases::Comparison;

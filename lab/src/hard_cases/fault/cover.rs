@@ -1,4 +1,4 @@
-//! Faults of cover: which pixels a triangle owns.
+//! Faults in coverage: which pixels a triangle owns.
 
 use super::{centre, paint, side, wrapped};
 use crate::hard_cases::face::{Corner, gouraud};

@@ -52,7 +52,7 @@ impl Sample {
     }
 }
 
-/// The pixels that a triangle owns by the top-left rule, for faults that are not about cover.
+/// The pixels that a triangle owns by the top-left rule, for faults that are not about coverage.
 fn samples(size: (usize, usize), corners: &[Corner; 3]) -> Vec<Sample> {
     let [a, b, c] = *corners;
     let area = side(a, b, (c.x, c.y));

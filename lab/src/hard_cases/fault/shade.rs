@@ -1,4 +1,4 @@
-//! Faults of shade: which byte a pixel gets.
+//! Faults in shading: which byte a pixel gets.
 
 use super::{centre, samples, wrapped};
 use crate::hard_cases::face::Corner;
