@@ -157,9 +157,10 @@ impl<'a> Builder<'a> {
     }
 
     fn light(&mut self, layout: &Spanned<LightLayout>) -> Result<(), Fault> {
-        let LightLayout { sun, lamp, range, direction, intensity, color, path, .. } = layout.get_ref();
+        let LightLayout { sun, lamp, range, direction, intensity, color, path, outer, inner } = layout.get_ref();
         let path = path.as_ref().map(|path| motion::path(path, self.scene.duration)).transpose()?;
-        if let (Some(_), Some(span)) = (sun, direction.as_ref().map(Spanned::span)) {
+        let angle = outer.as_ref().or(inner.as_ref()).map(Spanned::span);
+        if let (Some(_), Some(span)) = (sun, direction.as_ref().map(Spanned::span).or(angle)) {
             return Err(Fault::value(span, "only a lamp has a cone"));
         }
         let light = match (sun, lamp, range) {

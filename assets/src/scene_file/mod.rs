@@ -123,6 +123,10 @@ pub(crate) fn parse_bytes(
     path: &Path,
     open: impl FnMut(&Path) -> io::Result<Box<dyn BufRead>>,
 ) -> Result<Loaded, SceneError> {
+    if bytes.len() > LONGEST {
+        // Its last character may be cut.
+        return Err(Fault { span: None, kind: SceneErrorKind::TooLong }.locate(path, ""));
+    }
     match str::from_utf8(bytes) {
         Ok(text) => parse(text, path, open),
         Err(error) => {

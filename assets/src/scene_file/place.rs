@@ -23,7 +23,9 @@ impl Place {
         }
         let before = &text[..byte];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        Self { line: before.matches('\n').count() + 1, column: before[line_start..].chars().count() + 1 }
+        // A byte order mark is in no column.
+        let column = before[line_start..].trim_start_matches('\u{FEFF}').chars().count() + 1;
+        Self { line: before.matches('\n').count() + 1, column }
     }
 }
 

@@ -10,9 +10,10 @@ use mode13h::palette::Rgb;
 use super::indexed::Indexed;
 use super::{LoadErrorKind, check_size};
 
-/// Returns whether these are the first bytes of a sprite.
+/// Returns whether these are the first bytes of a sprite. The length of a WebP or of a part of a JPEG may lie where its
+/// magic number does.
 pub(super) fn recognizes(head: &[u8]) -> bool {
-    matches!(head, [_, _, _, _, 0xE0, 0xA5, ..])
+    matches!(head, [_, _, _, _, 0xE0, 0xA5, ..]) && !head.starts_with(b"RIFF") && !head.starts_with(&[0xFF, 0xD8, 0xFF])
 }
 
 /// Bytes to be read from the front.

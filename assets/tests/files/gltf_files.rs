@@ -619,6 +619,48 @@ fn errors_say_part_or_place() {
     assert_eq!(refused(missing.as_bytes()), "a.glb: buffers[0]: no.bin: entity not found");
 }
 
+/// Exporters make faults where nothing is read, and leave out what may be left out.
+#[test]
+fn faults_of_what_is_not_read_are_no_errors() {
+    type Edit = fn(&mut Gltf);
+    let edits: [Edit; 7] = [
+        |file| file.replace("accessors", ",\"min\":[0,0,0],\"max\":[0,0,0]", ""),
+        |file| file.replace("accessors", "\"min\":[0,0,0]", "\"min\":[null,null,0]"),
+        |file| {
+            file.add("scenes", "{\"nodes\":[0]}");
+            file.add("scenes", "{\"name\":\"notes\"}");
+        },
+        |file| file.replace("meshes", "\"POSITION\":0", "\"POSITION\":0,\"BATCHID\":0"),
+        |file| file.replace("bufferViews", "}", ",\"target\":7}"),
+        |file| {
+            file.add("samplers", "{\"magFilter\":9987,\"minFilter\":1,\"wrapS\":33069}");
+        },
+        |file| file.more = ",\"extensionsRequired\":[\"KHR_mesh_quantization\"]".into(),
+    ];
+    for (number, edit) in edits.into_iter().enumerate() {
+        let mut file = with_triangle("");
+        edit(&mut file);
+        let loaded = loaded(file.glb(), "a.glb");
+        assert_eq!((loaded.mesh.triangles().len(), loaded.warnings), (1, Vec::<String>::new()), "edit {number}");
+    }
+    let file = with_triangle("");
+    // Bytes after the container.
+    assert_eq!(loaded([&file.glb()[..], b"\n"].concat(), "a.glb").mesh.triangles().len(), 1);
+    // Base64 with escapes.
+    let data = "data:application/octet-stream;base64,";
+    let uri = |body: &str| format!(",\"uri\":\"{data}{body}\"");
+    let body = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, [&file.bytes[..], &[0]].concat());
+    for body in [body.replace('=', "%3D"), body.trim_end_matches('=').replace("AA", "A%41") + "%3D%3D"] {
+        assert_eq!(loaded(file.json(&uri(&body)), "a.gltf").mesh.triangles().len(), 1, "{body}");
+    }
+    // What changes the model is named.
+    for (list, name) in [("Required", "VENDOR_hidden"), ("Used", "EXT_mesh_gpu_instancing")] {
+        let mut file = with_triangle("");
+        file.more = format!(",\"extensions{list}\":[\"{name}\"]");
+        assert_eq!(loaded(file.glb(), "a.glb").warnings, [format!("a.glb: ignored what {name} would change")]);
+    }
+}
+
 /// Programs and extensions may add to a file.
 #[test]
 fn additions_are_read_over() {

@@ -177,6 +177,7 @@ fn lines_of_all_kinds() {
         format!("\u{FEFF}{TRIANGLE}f 1 2 3\n"),
         format!("{TRIANGLE}f 1 2 3\n").replace('\n', "\r\n"),
         format!("{TRIANGLE}\t f\t1  2 \\\n 3 # and no more\n"),
+        format!("{TRIANGLE}f 1 2 \\ \t\n3\n"),
         format!("{TRIANGLE}f 1 2 3 \\"),
         format!("# C:\\models\\\n{TRIANGLE}f 1 2 3\n"),
         format!("{TRIANGLE}l 1 2 3\np 1\ns off\no x\ng\nvp 1 1\nf 1 2 3\n"),
@@ -292,6 +293,7 @@ fn smoothing_groups_are_honoured() {
     for (statements, due) in [
         (["s 1\n", "", "s 2\n", "", ""], [false, true, false, false]),
         (["s 7\n", "", "", "", ""], [false; 4]),
+        (["s 1\n", "", "s 4294967295\n", "", ""], [false, true, false, false]),
         (["s off\n", "", "", "", ""], [true; 4]),
         (["s 0\n", "", "s 3\n", "", "s off\n"], [true, true, false, true]),
         // Before the first the angle decides; what is in no group is left alone.
@@ -616,6 +618,9 @@ fn vertices_have_colours_as_in_ply() {
     };
     assert_eq!(read(&format!("{}{faces}", lines(&shown, "v ")), "a.obj"), due);
     assert_eq!(read(&format!("{}{faces}", lines(&shares, "v ")), "a.obj"), due);
+    // A little brighter than white.
+    let bright = |color: [u8; 3]| shares(color).replace("1 ", "1.000001 ");
+    assert_eq!(read(&format!("{}{faces}", lines(&bright, "v ")), "a.obj"), due);
     // With an alpha after it.
     assert_eq!(read(&format!("{}{faces}", lines(&|color| shares(color) + " 1", "v ")), "a.obj"), due);
 

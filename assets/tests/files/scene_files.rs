@@ -165,6 +165,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
             "`.inner`: a cone's inner angle must be at most its outer one",
         ),
         (cube("[[lights]]\nsun = [0, 1, 0]\ndirection = [0, 1, 0]"), "`lights[0].direction`: only a lamp has a cone"),
+        (cube("[[lights]]\nsun = [0, 1, 0]\nouter = 20"), "`lights[0].outer`: only a lamp has a cone"),
         // Out of range.
         (cube("duration = 0"), "2:12: `duration`: expected a number of seconds above 0, at most 3600, found 0"),
         (cube("duration = nan"), "2:12: `duration`: expected a number of seconds above 0, at most 3600, found NaN"),
@@ -328,7 +329,7 @@ fn f3_broken_scenes_are_one_line_with_line_column_and_key() {
 
 #[test]
 fn f3_what_is_no_text_or_too_long_is_refused() {
-    let mut tried = Tried::new("f3_what_is_no_text_or_too_long_is_refused", 6);
+    let mut tried = Tried::new("f3_what_is_no_text_or_too_long_is_refused", 8);
     let of = |bytes: &[u8]| Scene::from_toml_bytes(bytes, "a.toml", open).expect_err("no scene");
     let error = of(b"name = '\xC3\xA9'\nname = '\xFF'");
     assert!(matches!(*error.kind, SceneErrorKind::NotText));
@@ -339,6 +340,13 @@ fn f3_what_is_no_text_or_too_long_is_refused() {
 
     let longest = CUBE.to_owned() + &"#".repeat(LONGEST - CUBE.len());
     assert!(loaded(&longest).is_ok());
+    tried.add(1);
+    // A byte order mark is in no column.
+    assert_eq!(of("\u{FEFF}objects = [{ shap = 'torus' }]".as_bytes()).place, Some(Place { line: 1, column: 14 }));
+    tried.add(1);
+    // A character that the limit cuts.
+    let cut = [longest.as_bytes(), &[0xC3]].concat();
+    assert!(matches!(*of(&cut).kind, SceneErrorKind::TooLong));
     tried.add(1);
     let error = loaded(&(longest.clone() + "#")).expect_err("too long");
     assert_eq!(error.to_string(), "folder/scene.toml: too long: a scene file may be at most 1 MiB");

@@ -194,7 +194,8 @@ impl Pixel {
             text.row("", &format!("{name} {x:>8}  {y:>8}  {at:>20}  {shade:>14}  {:>12}", corner.depth()));
         }
         if !seen.exact_cover {
-            let words = "on whole pixels, from Ax to the last before Bx in each row: no edge functions, no exact coverage";
+            let words =
+                "on whole pixels, from Ax to the last before Bx in each row: no edge functions, no exact coverage";
             return text.say("cover", words);
         }
         for (name, edge) in ["A to B", "B to C", "C to A"].iter().zip(face.edges(self.x, self.y)) {

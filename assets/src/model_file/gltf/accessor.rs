@@ -1,7 +1,10 @@
 //! Buffers, and the numbers in them.
 
+use core::ops::Range;
+use std::collections::HashMap;
 use std::io;
 use std::path::Path;
+use std::rc::Rc;
 
 use ::gltf::accessor::{DataType, sparse};
 use ::gltf::buffer::{self, Source};
@@ -13,18 +16,20 @@ use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
 use crate::model_file::word::shown_name;
 
 /// An image used by the file.
-pub(super) enum Image {
+enum Image {
     /// The bytes of a picture file.
     Bytes(Vec<u8>),
+    /// The buffer that contains a picture file, and where.
+    Part(usize, Range<usize>),
     /// The path of a picture file.
     File(String),
 }
 
 /// The bytes of all buffers, and of the images outside them.
 pub(super) struct Buffers {
-    buffers: Vec<Vec<u8>>,
-    /// Each image: its bytes or its path.
-    pub(super) images: Vec<Image>,
+    /// Many may share the bytes of one file or chunk.
+    buffers: Vec<Rc<[u8]>>,
+    images: Vec<Image>,
 }
 
 /// The maximum number of rows of an accessor without a buffer view: all zeros, so a short file may ask for any number.
@@ -39,19 +44,23 @@ impl Buffers {
         mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
     ) -> Result<Self, String> {
         let folder = path.parent().unwrap_or(Path::new(""));
-        let mut buffers = Vec::new();
+        let binary: Option<Rc<[u8]>> = binary.map(Rc::from);
+        let (mut buffers, mut files) = (Vec::new(), HashMap::new());
         for buffer in document.buffers() {
             let part = format!("buffers[{}]", buffer.index());
             let bytes = match buffer.source() {
-                Source::Bin => {
-                    binary.map(<[u8]>::to_vec).ok_or_else(|| format!("{part}: the file has no binary chunk"))?
-                }
+                Source::Bin => binary.clone().ok_or_else(|| format!("{part}: the file has no binary chunk"))?,
                 Source::Uri(uri) => match data(uri) {
-                    Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?,
+                    Some(bytes) => bytes.map_err(|what| format!("{part}: {what}"))?.into(),
                     None => {
                         let name = decoded(uri);
                         let shown = || folder.join(shown_name(&name));
-                        file(&folder.join(&name)).map_err(|error| format!("{part}: {}: {error}", shown().display()))?
+                        if !files.contains_key(&name) {
+                            let bytes = file(&folder.join(&name));
+                            let bytes = bytes.map_err(|error| format!("{part}: {}: {error}", shown().display()))?;
+                            files.insert(name.clone(), Rc::from(bytes));
+                        }
+                        Rc::clone(&files[&name])
                     }
                 },
             };
@@ -64,7 +73,7 @@ impl Buffers {
         for image in document.images() {
             let image = match image.source() {
                 ::gltf::image::Source::View { view, .. } => match own.view(&view) {
-                    Ok(bytes) => Image::Bytes(bytes.to_vec()),
+                    Ok(bytes) => Image::Part(view.buffer().index(), view.offset()..view.offset() + bytes.len()),
                     Err(what) => return Err(format!("images[{}]: {what}", image.index())),
                 },
                 ::gltf::image::Source::Uri { uri, .. } => match data(uri) {
@@ -78,8 +87,17 @@ impl Buffers {
         Ok(own)
     }
 
+    /// The picture file of an image: its bytes, or its path.
+    pub(super) fn image(&self, index: usize) -> Option<Result<&[u8], &str>> {
+        Some(match self.images.get(index)? {
+            Image::Bytes(bytes) => Ok(bytes),
+            Image::Part(buffer, part) => Ok(self.buffers.get(*buffer)?.get(part.clone())?),
+            Image::File(path) => Err(path),
+        })
+    }
+
     fn view(&self, view: &buffer::View<'_>) -> Result<&[u8], String> {
-        let bytes = self.buffers.get(view.buffer().index()).map(Vec::as_slice).unwrap_or_default();
+        let bytes = self.buffers.get(view.buffer().index()).map(|bytes| &**bytes).unwrap_or_default();
         let end = view.offset().checked_add(view.length());
         end.and_then(|end| bytes.get(view.offset()..end))
             .ok_or_else(|| format!("bufferViews[{}] ends beyond its buffer", view.index()))
@@ -92,14 +110,10 @@ impl Buffers {
 
     /// The rows of an accessor at these indices, which must be below its count.
     pub(super) fn rows_at<const N: usize>(&self, accessor: &Accessor<'_>, at: &[u32]) -> Result<Vec<[f64; N]>, String> {
-        if accessor.sparse().is_none() {
-            return self.picked(accessor, Some(at));
-        }
-        let rows = self.rows::<N>(accessor)?;
-        Ok(at.iter().map(|&index| rows[index as usize]).collect())
+        self.picked(accessor, Some(at))
     }
 
-    /// The rows of an accessor: all of them, or those at some indices if it is not sparse.
+    /// The rows of an accessor: all of them, or those at some indices.
     fn picked<const N: usize>(&self, accessor: &Accessor<'_>, at: Option<&[u32]>) -> Result<Vec<[f64; N]>, String> {
         let part = format!("accessors[{}]", accessor.index());
         if accessor.dimensions().multiplicity() < N {
@@ -137,10 +151,20 @@ impl Buffers {
             let view = values.view();
             let bytes = self.view(&view)?;
             let value = slices(bytes, values.offset(), view.stride(), size, sparse.count()).ok_or_else(beyond)?;
+            let mut replaced = HashMap::new();
             for i in 0..sparse.count() {
                 let [index] = self::row::<1>(index(i), kind, false);
-                *rows.get_mut(index as usize).ok_or_else(|| format!("{part}.sparse: there is no element {index}"))? =
-                    row(value(i));
+                if index as usize >= accessor.count() {
+                    return Err(format!("{part}.sparse: there is no element {index}"));
+                }
+                replaced.insert(index as u32, i);
+            }
+            for (place, to) in rows.iter_mut().enumerate() {
+                // Fewer than 2³², as indices have 32 bits.
+                let index = at.map_or(place as u32, |at| at[place]);
+                if let Some(&i) = replaced.get(&index) {
+                    *to = row(value(i));
+                }
             }
         }
         Ok(rows)
@@ -199,9 +223,12 @@ fn data(uri: &str) -> Option<Result<Vec<u8>, String>> {
     }
     const BASE64: GeneralPurpose = GeneralPurpose::new(
         &base64::alphabet::STANDARD,
-        GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+        // As browsers decode it.
+        GeneralPurposeConfig::new()
+            .with_decode_padding_mode(DecodePaddingMode::Indifferent)
+            .with_decode_allow_trailing_bits(true),
     );
-    Some(BASE64.decode(body).map_err(|_| String::from("invalid base64")))
+    Some(BASE64.decode(decoded_bytes(body)).map_err(|_| String::from("invalid base64")))
 }
 
 /// A URI's path with percent escapes such as `%20` decoded.

@@ -1,5 +1,6 @@
 //! The two containers: plain JSON, and the binary one with JSON and bytes in chunks.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use ::gltf::json::validation::{self, Validate};
@@ -12,14 +13,30 @@ use crate::model_file::{ModelFileError, ModelFileErrorKind, Place};
 /// The extensions without which a mesh would be misread.
 const NEEDED: [&str; 3] = ["KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression"];
 
+/// The extensions that are read, or need nothing.
+const KNOWN: [&str; 6] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_xmp_json_ld",
+];
+
+/// The extensions whose loss changes the model even if they are not required.
+const MISSED: [&str; 3] = ["EXT_mesh_gpu_instancing", "KHR_materials_pbrSpecularGlossiness", "KHR_node_visibility"];
+
 /// Returns whether a file is a binary container, or JSON with an `asset`.
 pub(crate) fn recognizes(bytes: &[u8]) -> bool {
     let is_json = without_mark(bytes).trim_ascii_start().starts_with(b"{");
     bytes.starts_with(b"glTF") || (is_json && bytes.windows(7).any(|word| word == b"\"asset\""))
 }
 
-/// The document, and the binary chunk if there is one.
-pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option<&'b [u8]>), ModelFileError> {
+/// A document, the binary chunk if there is one, and the extensions that are ignored but change the model.
+type Opened<'b> = (Document, Option<&'b [u8]>, BTreeSet<String>);
+
+/// Opens a file.
+pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<Opened<'b>, ModelFileError> {
     let (text, start, binary) = match bytes.starts_with(b"glTF") {
         true => chunks(bytes, path)?,
         false => (without_mark(bytes), None, None),
@@ -67,25 +84,53 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<(Document, Option
         image.mime_type.get_or_insert_with(|| json::image::MimeType(String::new()));
     }
     // Whatever other extensions are required, the rest can be drawn.
-    root.extensions_required.clear();
+    let mut ignored = BTreeSet::from_iter(core::mem::take(&mut root.extensions_required));
+    ignored.retain(|name| !KNOWN.contains(&name.as_str()));
+    ignored.extend(root.extensions_used.iter().filter(|name| MISSED.contains(&name.as_str())).cloned());
+    forget_unused(&mut root);
     if let Some((part, what)) = first_fault(&root) {
         // The crate names the field of its own struct.
         let part = part.replace("khrLightsPunctual", "KHR_lights_punctual");
         return Err(fault(format!("{part}: {}", clause(&what.to_string()))));
     }
-    Ok((Document::from_json_without_validation(root), binary))
+    Ok((Document::from_json_without_validation(root), binary, ignored))
 }
 
-/// Parses JSON. `gltf` requires each channel of an animation to name a node, which the specification does not. Channels
-/// without a node, whose target only an extension gives, are left out.
+/// Removes what is faulty but never read, so that it makes no file unreadable.
+fn forget_unused(root: &mut json::Root) {
+    use validation::Checked::{Invalid, Valid};
+    for primitive in root.meshes.iter_mut().flat_map(|mesh| &mut mesh.primitives) {
+        // Names without an underscore that the specification does not know.
+        primitive.attributes.retain(|semantic, _| matches!(semantic, Valid(_)));
+    }
+    for sampler in &mut root.samplers {
+        sampler.mag_filter.take_if(|filter| matches!(filter, Invalid));
+        sampler.min_filter.take_if(|filter| matches!(filter, Invalid));
+        for wrap in [&mut sampler.wrap_s, &mut sampler.wrap_t] {
+            if matches!(wrap, Invalid) {
+                *wrap = Valid(json::texture::WrappingMode::default());
+            }
+        }
+    }
+    for view in &mut root.buffer_views {
+        view.target.take_if(|target| matches!(target, Invalid));
+    }
+}
+
+/// Parses JSON. `gltf` requires each channel of an animation to name a node, and each scene to list nodes, which the
+/// specification does not. Channels without a node, whose target only an extension gives, are left out.
 fn parsed(text: &[u8]) -> Result<json::Root, json::Error> {
     let error = match json::Root::from_slice(text) {
-        Err(error) if error.to_string().starts_with("missing field `node`") => error,
+        Err(error) if error.to_string().starts_with("missing field `node") => error,
         result => return result,
     };
     let again = || {
         let mut all: json::Value = json::deserialize::from_slice(text).ok()?;
-        for animation in all.get_mut("animations")?.as_array_mut()? {
+        let no_nodes = || json::Value::Array(Vec::new());
+        for scene in all.get_mut("scenes").and_then(json::Value::as_array_mut).into_iter().flatten() {
+            scene.as_object_mut()?.entry("nodes").or_insert_with(no_nodes);
+        }
+        for animation in all.get_mut("animations").and_then(json::Value::as_array_mut).into_iter().flatten() {
             let channels = animation.get_mut("channels").and_then(json::Value::as_array_mut);
             let has_node = |channel: &json::Value| channel.pointer("/target/node").is_some();
             channels.into_iter().for_each(|channels| channels.retain(has_node));
@@ -98,14 +143,15 @@ fn parsed(text: &[u8]) -> Result<json::Root, json::Error> {
 /// The first part of a file that `gltf` finds faulty, and its fault.
 ///
 /// `gltf` wants every accessor to have a buffer view or sparse values; by the specification an accessor without them is
-/// all zeros. A primitive without positions is left out.
+/// all zeros. A primitive without positions is left out, and the bounds of positions are not read.
 fn first_fault(root: &json::Root) -> Option<(String, validation::Error)> {
     let mut first = None;
     root.validate(root, json::Path::new, &mut |path, error| {
         let part = path().to_string();
         let is_zeros = part.starts_with("accessors[") && part.ends_with("].bufferView");
         let is_unplaced = part.ends_with(".attributes[\"POSITION\"]");
-        if !((is_zeros || is_unplaced) && error == validation::Error::Missing) {
+        let is_bound = [".min", ".max"].iter().any(|end| part.ends_with(&format!(".attributes[\"POSITION\"]{end}")));
+        if !(is_bound || (is_zeros || is_unplaced) && error == validation::Error::Missing) {
             first.get_or_insert((part, error));
         }
     });
@@ -140,7 +186,9 @@ fn chunks<'b>(bytes: &'b [u8], path: &Path) -> Result<Chunks<'b>, ModelFileError
         return Err(at(FIRST + 4, ModelFileErrorKind::Fault("the first chunk is not JSON".into())));
     }
     let next = FIRST + 8 + text.len();
-    let binary = match next < bytes.len() {
+    // What is behind the container is not a chunk.
+    let length = word(8).and_then(|length| usize::try_from(length).ok()).filter(|length| *length >= next);
+    let binary = match next < length.unwrap_or(bytes.len()).min(bytes.len()) {
         true => Some(chunk(next, "a binary chunk")?).filter(|(_, kind)| *kind == BINARY).map(|(bytes, _)| bytes),
         false => None,
     };

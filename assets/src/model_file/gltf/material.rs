@@ -13,7 +13,7 @@ use mode13h::scene::Shared;
 use mode13h::texture::Texture;
 
 use super::LeftOut;
-use super::accessor::{Buffers, Image};
+use super::accessor::Buffers;
 use crate::model_file::Embedded;
 use crate::texture::{Decoded, decode_all};
 
@@ -220,8 +220,8 @@ impl<'a> Materials<'a> {
             return None;
         };
         let buffers = self.buffers;
-        if let Some(Image::File(path)) = buffers.images.get(source.index()) {
-            return Some(path.clone());
+        if let Some(Err(path)) = buffers.image(source.index()) {
+            return Some(path.to_owned());
         }
         let Some((texture, was_transparent)) = self.image(source.index()) else {
             self.leave_out("textures in unsupported formats");
@@ -240,9 +240,9 @@ impl<'a> Materials<'a> {
         let buffers = self.buffers;
         let file = &mut self.file;
         let read = || {
-            let bytes = match buffers.images.get(index)? {
-                Image::Bytes(bytes) => Cow::Borrowed(bytes.as_slice()),
-                Image::File(path) => Cow::Owned(file(Path::new(path)).ok()?),
+            let bytes = match buffers.image(index)? {
+                Ok(bytes) => Cow::Borrowed(bytes),
+                Err(path) => Cow::Owned(file(Path::new(path)).ok()?),
             };
             let Decoded { texture, was_transparent, .. } = decode_all(Cursor::new(bytes)).ok()?;
             Some((Shared::new(texture), was_transparent))

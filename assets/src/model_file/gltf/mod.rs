@@ -67,7 +67,7 @@ pub(crate) fn draft(
     path: &Path,
     mut file: impl FnMut(&Path) -> io::Result<Vec<u8>>,
 ) -> Result<Draft, ModelFileError> {
-    let (document, binary) = container::open(bytes, path)?;
+    let (document, binary, ignored) = container::open(bytes, path)?;
     let fault = |what: String| ModelFileError::of_file(path, ModelFileErrorKind::Fault(what));
     let buffers = Buffers::read(&document, binary, path, &mut file).map_err(fault)?;
     let mut draft = Draft { up: Some(UpAxis::Y), ..Draft::default() };
@@ -123,6 +123,11 @@ pub(crate) fn draft(
     if materials.has_unseen {
         let what = "a fully transparent material is drawn opaque; its alpha is left out";
         draft.warnings.push(|| format!("{}: {what}", path.display()));
+    }
+    if !ignored.is_empty() {
+        let all: Vec<&str> = ignored.iter().map(String::as_str).collect();
+        let all = all.join(", ");
+        draft.warnings.push(|| format!("{}: ignored what {all} would change", path.display()));
     }
     left_out.append(&mut materials.left_out);
     if !left_out.is_empty() {

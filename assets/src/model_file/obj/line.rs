@@ -10,7 +10,8 @@ use crate::model_file::word::parsed;
 /// The maximum length of a line in bytes, after joining: a device or a small packed file may have no line ending.
 const LONGEST: usize = 1 << 26;
 
-/// A line reader that joins lines ending in a backslash. LF, CR LF and CR end a line. A single buffer is reused.
+/// A line reader that joins lines ending in a backslash, with or without spaces after it. LF, CR LF and CR end a line. A
+/// single buffer is reused.
 pub(crate) struct Lines<R> {
     reader: R,
     buffer: Vec<u8>,
@@ -43,11 +44,12 @@ impl<R: BufRead> Lines<R> {
                 self.buffer.drain(..3);
             }
             first_word += self.buffer[first_word..].iter().take_while(|byte| byte.is_ascii_whitespace()).count();
-            // A comment that ends in a path with a backslash joins nothing.
-            if !self.buffer.ends_with(b"\\") || self.buffer[first_word] == b'#' {
+            // There may be spaces after the backslash. A comment that ends in a path with one joins nothing.
+            let length = self.buffer.trim_ascii_end().len();
+            if length == 0 || self.buffer[length - 1] != b'\\' || self.buffer[first_word] == b'#' {
                 return Ok(Some((self.number, &self.buffer)));
             }
-            self.buffer.pop();
+            self.buffer.truncate(length - 1);
             self.buffer.push(b' ');
         }
     }

@@ -138,9 +138,12 @@ fn only_surface(lists: &Lists) -> Option<usize> {
     used.all(|surface| surface == first).then_some(first)
 }
 
-/// The colours of vertices, which are in 0 to 1, or in 0 to 255 if one of them is above 1.
+/// The colours of vertices, which are in 0 to 1, or in 0 to 255 if one of them is above 1 and all are whole numbers, or
+/// one is above 16. Others above 1 are brighter than white.
 fn rgb(colors: &[[f32; 3]]) -> Vec<Rgb> {
-    let full = if colors.as_flattened().iter().any(|channel| *channel > 1.0) { 255.0 } else { 1.0 };
+    let most = colors.as_flattened().iter().copied().fold(0.0, f32::max);
+    let are_whole = || colors.as_flattened().iter().all(|channel| channel.fract() == 0.0);
+    let full = if most > 16.0 || (most > 1.0 && are_whole()) { 255.0 } else { 1.0 };
     colors.iter().map(|color| Rgb::from_intensities(color.map(|channel| channel / full))).collect()
 }
 

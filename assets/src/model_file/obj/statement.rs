@@ -116,7 +116,7 @@ fn group(rest: &[u8]) -> Option<u32> {
         b"off" => Some(0),
         b"on" => Some(1),
         // The greatest number is reserved for an unknown group.
-        word => whole(word).and_then(|number| u32::try_from(number).ok()).filter(|&group| group < u32::MAX),
+        word => whole(word).map(|number| u32::try_from(number).unwrap_or(u32::MAX).min(u32::MAX - 1)),
     }
 }
 
