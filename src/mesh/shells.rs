@@ -53,7 +53,7 @@ pub(super) fn inside_out(positions: &[Vec3], triangles: &[[u32; 3]], edges: &Edg
     if suspects.is_empty() {
         return None;
     }
-    let enclosing = enclosing(positions, triangles, &shell_of, &suspects, count);
+    let enclosing = enclosing(positions, triangles, &shell_of, &suspects, count)?;
     // Larger shells first.
     let compare = |a: u32, b: u32| {
         let [a_size, b_size] = [a, b].map(|shell| volumes[shell as usize].abs());
@@ -135,16 +135,21 @@ fn volumes(positions: &[Vec3], triangles: &[[u32; 3]], shell_of: &[u32], count: 
     sums.into_iter().map(|(_, sum, size)| if sum.abs() > size * (1.0 / 4_194_304.0) { sum } else { 0.0 }).collect()
 }
 
+/// The maximum number of tests of a face against a ray: about half a second, and as much again for each 65,536 faces.
+const MAX_TESTS: u64 = 1 << 26;
+const MAX_TESTS_PER_FACE: u64 = 1024;
+
 /// For each shell in `wanted`, the other shells that wind around one of its points, with their
 /// contributions to the winding number there: −1 or 1 for each of their faces that a ray crosses
-/// before it.
+/// before it. `None` if there are far too many tests, as for thousands of shells one inside the other; then the mesh is
+/// left as it is.
 fn enclosing(
     positions: &[Vec3],
     triangles: &[[u32; 3]],
     shell_of: &[u32],
     wanted: &[u32],
     count: usize,
-) -> Vec<Vec<(u32, i32)>> {
+) -> Option<Vec<Vec<(u32, i32)>>> {
     // Rays run along z, so the third coordinate is the distance along a ray, and the second one the ray's row.
     let corners = |triangle: &[u32; 3]| triangle.map(|vertex| widen(positions[vertex as usize]));
     // The ray goes through the middle of the shell's largest face as seen along the rays.
@@ -161,12 +166,14 @@ fn enclosing(
         wanted.iter().enumerate().map(|(ray, &shell)| (largest[shell as usize].1[1], ray)).collect();
     rays.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
     let mut enclosing = vec![Vec::new(); wanted.len()];
+    let mut tests = MAX_TESTS + MAX_TESTS_PER_FACE * triangles.len() as u64;
     for (triangle, &shell) in triangles.iter().zip(shell_of) {
         let corners = corners(triangle);
         let rows = corners.map(|corner| corner[1]);
         let (low, high) = (rows[0].min(rows[1]).min(rows[2]), rows[0].max(rows[1]).max(rows[2]));
         let first = rays.partition_point(|&(row, _)| row <= low);
         for &(row, ray) in rays[first..].iter().take_while(|&&(row, _)| row <= high) {
+            tests = tests.checked_sub(1)?;
             let own = wanted[ray];
             let [column, _, depth] = largest[own as usize].1;
             let Some((from, to, step)) = cross_row(&corners, row).filter(|_| own != shell) else { continue };
@@ -175,5 +182,5 @@ fn enclosing(
             }
         }
     }
-    enclosing
+    Some(enclosing)
 }

@@ -1,12 +1,12 @@
 //! Meshes with one surface per vertex. A vertex is lit once, with one material, so where two
 //! surfaces meet, each needs its own vertex.
 
+use alloc::collections::BTreeMap;
 use alloc::vec;
-use alloc::vec::Vec;
 
 use super::Mesh;
 
-/// No surface, or no next vertex, so far.
+/// No surface so far.
 const NONE: u32 = u32::MAX;
 
 impl Mesh {
@@ -25,29 +25,28 @@ impl Mesh {
     #[must_use]
     pub fn with_one_surface_a_vertex(&self) -> Self {
         let mut mesh = self.clone();
-        // For each vertex, its surface and the next vertex split off from the same original.
-        let mut links: Vec<(u32, u32)> = vec![(NONE, NONE); mesh.positions.len()];
+        let mut owners = vec![NONE; mesh.positions.len()];
+        // The copies of vertices for further surfaces.
+        let mut copies = BTreeMap::new();
         for (triangle, &surface) in mesh.triangles.iter_mut().zip(&mesh.triangle_surfaces) {
             for index in triangle {
-                let (mut at, is_open) = (*index, |owner: u32| owner == NONE || owner == u32::from(surface));
-                while !is_open(links[at as usize].0) && links[at as usize].1 != NONE {
-                    at = links[at as usize].1;
-                }
-                if is_open(links[at as usize].0) {
-                    links[at as usize].0 = u32::from(surface);
+                let at = *index as usize;
+                let owner = &mut owners[at];
+                if *owner == NONE || *owner == u32::from(surface) {
+                    *owner = u32::from(surface);
+                } else if let Some(copy) = copies.get(&(*index, surface)) {
+                    *index = *copy;
                 } else if let Ok(new) = u32::try_from(mesh.positions.len()) {
                     // With at most three vertices per triangle the count stays below 2³³. In a mesh so large that the
                     // index does not fit, the triangle keeps another surface's vertex.
-                    links[at as usize].1 = new;
-                    links.push((u32::from(surface), NONE));
-                    mesh.positions.push(mesh.positions[at as usize]);
-                    mesh.normals.push(mesh.normals[at as usize]);
+                    copies.insert((*index, surface), new);
+                    mesh.positions.push(mesh.positions[at]);
+                    mesh.normals.push(mesh.normals[at]);
                     if let Some(texcoords) = &mut mesh.texcoords {
-                        texcoords.push(texcoords[at as usize]);
+                        texcoords.push(texcoords[at]);
                     }
-                    at = new;
+                    *index = new;
                 }
-                *index = at;
             }
         }
         mesh.with_facts()

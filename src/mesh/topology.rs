@@ -171,7 +171,7 @@ impl Edges {
     /// Calls `found` for triangles that lie back to back, with the same three points and opposite winding: first the
     /// list of those wound one way, then of those wound the other. Neither list is empty; each is in ascending order.
     pub(super) fn opposites(&self, triangles: &[[u32; 3]], points: &[u32], mut found: impl FnMut(&[u32], &[u32])) {
-        let (mut ups, mut downs) = (Vec::new(), Vec::new());
+        let (mut sides, mut ups, mut downs) = (Vec::new(), Vec::new(), Vec::new());
         let third = |corner: u32| points[triangles[corner as usize / 3][(corner as usize + 2) % 3] as usize];
         for ((_, higher), faces) in self.each() {
             // Most edges have two faces, with different third corners.
@@ -181,14 +181,15 @@ impl Edges {
                 continue;
             }
             // Two such triangles share all three edges; they are reported at the edge between their two lower points.
-            let mut thirds: Vec<u32> = faces.iter().map(|face| third(face.1)).filter(|&far| far > higher).collect();
-            thirds.sort_unstable();
-            thirds.dedup();
-            for far in thirds {
+            sides.clear();
+            sides.extend(faces.iter().map(|&(to, corner)| (third(corner), to & 1, corner / 3)));
+            sides.retain(|&(far, ..)| far > higher);
+            sides.sort_unstable();
+            for equal in sides.chunk_by(|a, b| a.0 == b.0) {
                 ups.clear();
                 downs.clear();
-                for &(to, corner) in faces.iter().filter(|face| third(face.1) == far) {
-                    if to & 1 == 0 { ups.push(corner / 3) } else { downs.push(corner / 3) }
+                for &(_, side, triangle) in equal {
+                    if side == 0 { ups.push(triangle) } else { downs.push(triangle) }
                 }
                 if !ups.is_empty() && !downs.is_empty() {
                     found(&ups, &downs);

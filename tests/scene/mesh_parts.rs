@@ -60,6 +60,22 @@ fn normals_without_a_direction_count_as_missing() {
     assert_eq!(mesh.normals(), [Vec3::Z, Vec3::Z, Vec3::Z, Vec3::Y]);
 }
 
+/// Bodies one inside the other are turned, too, but not thousands: a small file must not take minutes and gigabytes.
+#[test]
+fn thousands_of_nested_bodies_are_left_as_they_are() {
+    let nested = |count: usize| {
+        let corners = [[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]];
+        let size = |i: usize| (i + 1) as f32 / count as f32;
+        let positions = (0..count).flat_map(|i| corners.map(|corner| Vec3::from_array(corner) * size(i))).collect();
+        let faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]];
+        let triangles = (0..count as u32).flat_map(|i| faces.map(|face| face.map(|corner| 4 * i + corner))).collect();
+        Mesh::from_parts(Parts { positions, triangles, ..Parts::default() }).expect("a mesh").1.turned
+    };
+    // Every second one is a hole.
+    assert_eq!(nested(200), 100);
+    assert_eq!(nested(8_000), 0);
+}
+
 #[test]
 fn a_body_that_is_inside_out_is_turned_with_its_lists() {
     let cube = shapes::cube();

@@ -281,7 +281,7 @@ fn time_to_parse(text: &str, library: &str) -> f64 {
 #[ignore = "the long run: it measures time"]
 fn f1_long_time_grows_as_the_file_does() {
     type Make = fn(usize) -> (String, String);
-    let cases: [(&str, Make); 19] = [
+    let cases: [(&str, Make); 20] = [
         ("backslashes", |n| ("\\\n".repeat(n), String::new())),
         ("blank lines joined", |n| (" \t\\\r\n".repeat(n), String::new())),
         ("carriage returns", |n| ("\r".repeat(n) + TRIANGLE, String::new())),
@@ -328,12 +328,16 @@ fn f1_long_time_grows_as_the_file_does() {
                 String::new(),
             )
         }),
+        ("faces around an edge", |n| {
+            let points = (0..n).fold(String::from("v 0 0 0\nv 1 0 0\n"), |t, i| t + &format!("v 0 {i} 1\n"));
+            ((0..n).fold(points, |t, i| t + &format!("f 1 2 {}\n", i + 3)), String::new())
+        }),
         ("corners of many triples", |n| {
             let list = (1..=n / 2).fold(TRIANGLE.to_string(), |t, i| t + &format!("vt {i} 0\nvn 0 {i} 1\n"));
             ((1..=n / 2).fold(list, |t, i| t + &format!("f 1/{i}/{i} 2/{i}/{i} 3/{i}/{i}\n")), String::new())
         }),
     ];
-    let mut tried = Tried::new("f1_long_time_grows_as_the_file_does", 19);
+    let mut tried = Tried::new("f1_long_time_grows_as_the_file_does", 20);
     for (what, make) in cases {
         let [(short, short_library), (long, long_library)] = [make(5_000), make(40_000)];
         let ratio = || time_to_parse(&long, &long_library) / time_to_parse(&short, &short_library);
