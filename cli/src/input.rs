@@ -150,6 +150,17 @@ fn is_scene(bytes: &[u8]) -> bool {
     str::from_utf8(bytes).is_ok_and(has_objects)
 }
 
+/// Returns whether a file without an extension is a scene.
+fn is_scene_file(words: &OsStr) -> bool {
+    let path = Path::new(words);
+    if path.extension().is_some() || words.to_str().is_some_and(|name| shapes::NAMES.contains(&name)) {
+        return false;
+    }
+    let mut text = Vec::new();
+    let file = model_file::open_named(path).ok();
+    file.is_some_and(|file| file.take(LONGEST_SCENE).read_to_end(&mut text).is_ok() && is_scene(&text))
+}
+
 /// All of standard input, read when first asked for, because a pipe gives its bytes only once.
 fn standard_input() -> io::Result<&'static [u8]> {
     static BYTES: OnceLock<Vec<u8>> = OnceLock::new();
@@ -190,7 +201,7 @@ pub(crate) fn input(words: &OsStr, options: &Options) -> Result<Input, Failure> 
         return model_of(stream, options).map(|model| Input::Model(Box::new(model)));
     } else if let Some(shipped) = words.to_str().and_then(|name| name.parse::<Shipped>().ok()) {
         shipped.load()
-    } else if output::has_extension(Path::new(words), "toml") {
+    } else if output::has_extension(Path::new(words), "toml") || is_scene_file(words) {
         scene_file::load(words)
     } else {
         let known = || typo::no_input(&words.to_string_lossy());

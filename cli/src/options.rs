@@ -183,7 +183,7 @@ pub(crate) struct Moment {
     ///
     /// The first of several frames is at that time. A model turns by 90 degrees a second, or plays its animation.
     ///
-    /// [default: the scene's `picture` for a single frame, otherwise 0]
+    /// [default: the scene's `picture` for a single frame without --turn, otherwise 0]
     #[arg(long, value_name = "SECONDS", value_parser = finite, allow_negative_numbers = true)]
     time: Option<f64>,
 }
@@ -322,7 +322,11 @@ impl Drawing {
     /// Name of the palette from the command line.
     pub(crate) fn palette_name(&self) -> Option<String> {
         let words = self.palette.as_deref()?;
-        Some(Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned())
+        let stem = Path::new(words).file_stem().unwrap_or(words).to_string_lossy().into_owned();
+        // A file with the name of another palette keeps its own.
+        let is_taken = stem == input::AUTO || builtin::by_name(&stem).is_some();
+        let is_file = self.palette_file().is_some();
+        Some(if is_taken && is_file { words.to_string_lossy().into_owned() } else { stem })
     }
 
     /// The palette from the command line, if that is a file.

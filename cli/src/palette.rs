@@ -172,7 +172,9 @@ fn ramps(palette: &Palette) -> String {
 
 /// The palette as text: what it is, and its colours, painted if the terminal can show them.
 fn look(name: &str, palette: &Palette) -> String {
-    let provenance = builtin::by_name(name).map_or("", |builtin| builtin.provenance);
+    // A file may have the name of a built-in palette.
+    let builtin = builtin::by_name(name).filter(|builtin| *builtin.palette == *palette);
+    let provenance = builtin.map_or("", |builtin| builtin.provenance);
     let mut text = format!("{name}: {}. {provenance}", ramps(palette)).trim_end().to_string() + "\n";
     let painted = output::is_colored_terminal();
     let in_a_row = if painted { 32 } else { 8 };

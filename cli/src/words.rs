@@ -119,8 +119,10 @@ pub(crate) fn parse() -> Result<Words, Result<(), Failure>> {
         let has_heading = arg.get_help_heading().is_some();
         arg.hide(has_heading)
     };
-    let typed =
-        command().mut_args(without_drawing).try_get_matches().and_then(|matches| Words::from_arg_matches(&matches));
+    let typed = command()
+        .mut_args(without_drawing)
+        .try_get_matches_from(typed())
+        .and_then(|matches| Words::from_arg_matches(&matches));
     typed.map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => output::print(&error.render().to_string()),
         _ => Err(Failure::words(sentence(&error))),
@@ -156,7 +158,7 @@ pub(crate) fn run(words: &Words) -> Result<(), Failure> {
 
 /// Finds a word that is empty, and the option that it belongs to.
 fn empty_word() -> Option<String> {
-    let words: Vec<OsString> = std::env::args_os().skip(1).collect();
+    let words: Vec<OsString> = typed().into_iter().skip(1).collect();
     let is_option = |word: &&OsString| word.as_encoded_bytes().starts_with(b"-");
     let at = words.iter().position(|word| {
         word.is_empty() || (word.as_encoded_bytes().starts_with(b"--") && word.as_encoded_bytes().ends_with(b"="))
@@ -230,7 +232,7 @@ fn help() -> String {
     match first_word().as_ref().and_then(named) {
         Some(command) => {
             let all = self::command();
-            let second = std::env::args_os().nth(2);
+            let second = typed().into_iter().nth(2);
             let within = all.find_subcommand(command).zip(second).and_then(|(of, word)| of.find_subcommand(word));
             let within = within.map_or(String::new(), |within| format!(" {}", within.get_name()));
             format!("mode13h {command}{within} --help")
@@ -240,7 +242,18 @@ fn help() -> String {
 }
 
 fn first_word() -> Option<OsString> {
-    std::env::args_os().nth(1)
+    typed().into_iter().nth(1)
+}
+
+/// The command line, with a `-q` before the command moved after it: clap takes a word after an option for an INPUT.
+fn typed() -> Vec<OsString> {
+    let mut words: Vec<OsString> = std::env::args_os().collect();
+    let is_quiet = |word: &&OsString| *word == "-q" || *word == "--quiet";
+    let first = words.iter().skip(1).take_while(is_quiet).count() + 1;
+    if words.get(first).is_some_and(|word| !word.as_encoded_bytes().starts_with(b"-")) {
+        words[1..=first].rotate_right(1);
+    }
+    words
 }
 
 /// The command of this name.

@@ -137,6 +137,9 @@ def render(
     own = None if normals is None else _numbers("normals", normals, (given, 3))
     if own is not None:
         _finite("the normal of vertex", own)
+        zero = np.flatnonzero(used & ~own.any(axis=1))
+        if zero.size:
+            raise ValueError(f"the normal of vertex {zero[0]} is zero")
         own = own[used]
         # Lengths whose squares 32 bits cannot hold.
         longest = np.abs(own).max(axis=1, keepdims=True)

@@ -103,7 +103,9 @@ impl View {
                 // A point that is far away may be nearer on the same line, where squares are within range.
                 let way: [f64; 3] = std::array::from_fn(|i| self.target[i] - eye[i]);
                 let longest = way.iter().fold(0.0_f64, |longest, number| longest.max(number.abs()));
-                let target = std::array::from_fn(|i| eye[i] + way[i] * (1e6 / longest).min(1.0));
+                // Not so near that f32 cannot tell it from the eye.
+                let far = eye.iter().fold(1e6_f64, |far, number| far.max(number.abs()));
+                let target = std::array::from_fn(|i| eye[i] + way[i] * (far / longest).min(1.0));
                 let (eye, target) = (narrow(eye), narrow(target));
                 // The model, in the cube from −1 to 1, may be nearer than the target, or around the eye.
                 let distance = eye.distance(target).min(eye.length().max(1.0));

@@ -196,6 +196,10 @@ class Errors(unittest.TestCase):
         self.refused("normals: an array of shape (7, 3), but (8, 3) is needed", CUBE, CUBE_FACES, normals=CUBE[1:])
         self.refused("the normal of vertex 5 is not finite", CUBE, CUBE_FACES, normals=nan)
         self.refused("the normal of vertex 0 is zero", CUBE, CUBE_FACES, normals=CUBE * 0)
+        more = np.vstack([[[9, 9, 9]], CUBE])
+        normals = more.copy()
+        normals[[0, 3]] = 0
+        self.refused("the normal of vertex 3 is zero", more, CUBE_FACES + 1, normals=normals)
         self.refused("direction must not be zero", CUBE, CUBE_FACES, direction=(0, 0, 0))
         self.refused("direction: an array of shape (2,), but (3,) is needed", CUBE, CUBE_FACES, direction=(0, 0))
         self.refused("up must be finite", CUBE, CUBE_FACES, up=(0, np.nan, 0))
@@ -211,6 +215,7 @@ class Errors(unittest.TestCase):
         self.refused("field_of_view: an array of shape (1,), but a single number is needed", CUBE, CUBE_FACES, field_of_view=[9])
         names = ", ".join(typing.get_args(mode13h.Shading)[1:])
         self.refused(f'shading "none": unknown shading; there are {names}', CUBE, CUBE_FACES, shading="none")
+        self.refused(f'shading "none": unknown shading; there are {names}', CUBE, CUBE_FACES, shading="none", max_error=4)
         self.refused("shading: a name is needed", CUBE, CUBE_FACES, shading=1)
         names = ", ".join(typing.get_args(mode13h.Palette))
         self.refused(f'palette "none": unknown palette; there are {names}', CUBE, CUBE_FACES, palette="none")

@@ -192,6 +192,7 @@ fn long_help_on_inputs() -> String {
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let Options { inputs, terminal, to, scale, frames, moment, drawing, shading } = options.clone();
+    shading.note_ignored(&shading.renderer(&drawing, drawing.kernel()?));
     if terminal {
         let sending = terminal::Sending { to, scale, frames };
         sending.check(&inputs)?;

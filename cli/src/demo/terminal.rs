@@ -254,7 +254,8 @@ fn keys(mut bytes: &[u8]) -> Vec<Key> {
             [ESCAPE, b'[' | b'O', b'B', rest @ ..] => (Some(Key::Turn(0.0, ARROW_TAP)), rest),
             [ESCAPE, b'[' | b'O', b'C', rest @ ..] => (Some(Key::Turn(ARROW_TAP, 0.0)), rest),
             [ESCAPE, b'[' | b'O', b'D', rest @ ..] => (Some(Key::Turn(-ARROW_TAP, 0.0)), rest),
-            // Other keys with a name, up to the letter or the ~ at their end.
+            // Other keys with a name: F1 to F4, and those that end in a letter or a ~.
+            [ESCAPE, b'O', _, rest @ ..] => (None, rest),
             [ESCAPE, b'[', rest @ ..] => {
                 let end = rest.iter().position(|byte| (0x40..0x7f).contains(byte)).map_or(rest.len(), |end| end + 1);
                 (None, &rest[end..])
@@ -283,6 +284,7 @@ mod tests {
         assert_eq!(keys(b"\x1b[C\x1bOD"), [Key::Turn(ARROW_TAP, 0.0), Key::Turn(-ARROW_TAP, 0.0)]);
         // Page up, F5 with Shift, a key with Alt, a letter: none of them ends anything.
         assert_eq!(keys(b"\x1b[5~\x1b[15;2~\x1bxa"), []);
+        assert_eq!(keys(b"\x1bOP\x1bOQ\x1bOR\x1bOS"), []);
         assert_eq!(keys(b"\x1b[5~q"), [Key::End]);
         assert_eq!(keys(b"\x1b["), []);
     }
