@@ -36,7 +36,8 @@ impl Corner {
         Self { x, y, w, shade: i64::from(shade.to_bits()) << PARAMETER, vertex }
     }
 
-    /// The vertex on the screen; `None` if it is beyond the limit.
+    /// The vertex on the screen; `None` for one beyond the limit. Where rounding has moved a cut corner there, it is moved
+    /// back: at near distances of a few 1/65,536 that may be some pixels.
     fn project(&self, view: &ObjectView) -> Option<Vertex> {
         if self.vertex.is_some() {
             return self.vertex;
@@ -51,6 +52,7 @@ impl Corner {
         let depth = (((near << 31) + w) / (2 * w)) as u32;
         // Between two shades of at most 0xFF00, and rounded to the nearest.
         let shade = U8F8::from_bits(((self.shade + (1 << (PARAMETER - 1))) >> PARAMETER) as u16);
+        let [x, y] = [x, y].map(|c| c.clamp(-ObjectView::FARTHEST, ObjectView::FARTHEST));
         vertex(x, y, shade, depth)
     }
 }

@@ -110,7 +110,9 @@ impl<'a, I: VertexIndex> FixedMesh<'a, I> {
 
     /// Scales the mesh by 2^`exponent`.
     ///
-    /// Its unit is then 2^`exponent` units of the scene, so a mesh of any size can use all of its 32 bits.
+    /// Its unit is then 2^`exponent` units of the scene, so a mesh of any size can use all of its 32 bits. Where the
+    /// exponent and the binary logarithm of an object's scale add up to more than 16, drawing returns
+    /// [`IntegerError::TooFar`](super::IntegerError::TooFar), as for a mesh that uses them.
     #[must_use]
     pub fn with_exponent(mut self, exponent: i8) -> Self {
         self.parts.exponent = i32::from(exponent);

@@ -129,7 +129,10 @@ impl IntegerError {
     pub(crate) const fn what(&self) -> &'static str {
         match self {
             Self::Size => "each side of the picture must be 1 to 4,096 pixels",
-            Self::FieldOfView => "the field of view must be below 180°, and focal lengths 1/65,536 to 16,384 pixels",
+            Self::FieldOfView => {
+                "the field of view must be above 0° and below 180°, a pixel's sides above 0, and focal lengths 1/65,536 to \
+                 16,384 pixels"
+            }
             Self::Near => "the near distance must be above 0",
             Self::Direction => "the camera looks at its own position",
             Self::Scale => "an object's scale must not be negative",

@@ -204,6 +204,10 @@ impl ObjectView {
     /// pixel.
     pub(super) const LIMIT: i64 = 4 * 4096 - 1;
 
+    /// The greatest coordinate of a vertex, in 1/256 pixel: a quarter of a pixel beyond the limit, because rounding may
+    /// move a clipped point off it.
+    pub(super) const FARTHEST: i128 = (Self::LIMIT * 64 + 64) as i128;
+
     pub(super) fn new<I: VertexIndex>(
         view: &View,
         placement: &Placement,
@@ -272,12 +276,11 @@ impl ObjectView {
     }
 }
 
-/// A vertex from coordinates in 1/256 pixel; `None` if they are beyond the limit. They may exceed
-/// it by a quarter of a pixel, because rounding may move a clipped point off the limit.
+/// A vertex from coordinates in 1/256 pixel; `None` if they exceed [`ObjectView::FARTHEST`].
 #[inline]
 pub(super) fn vertex(x: i128, y: i128, shade: U8F8, depth: u32) -> Option<Vertex> {
-    let limit = i128::from(ObjectView::LIMIT * 64 + 64);
-    let within = |c: i128| (-limit..=limit).contains(&c).then_some(I24F8::from_bits(c as i32));
+    let most = ObjectView::FARTHEST;
+    let within = |c: i128| (-most..=most).contains(&c).then_some(I24F8::from_bits(c as i32));
     Vertex::new(within(x)?, within(y)?, shade, depth).ok()
 }
 
