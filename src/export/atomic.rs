@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::ffi::OsString;
 use std::fmt;
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -35,7 +35,7 @@ pub enum ExportErrorKind {
     NotADirectory,
     /// The directory exists, but no file can be created in it, because only the system creates files there.
     NoNewFiles,
-    /// The name is that of a directory, or ends like one.
+    /// The name is that of a directory, ends like one, or is empty.
     IsDirectory,
     /// Permission is denied, or the file or the file system is read-only.
     NotPermitted,
@@ -74,6 +74,9 @@ impl ExportErrorKind {
 
 impl fmt::Display for ExportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.path.as_os_str().is_empty() {
+            return f.write_str("the file has no name");
+        }
         write!(f, "{}: ", self.path.display())?;
         match &self.kind {
             ExportErrorKind::MissingDirectory => {
@@ -163,8 +166,6 @@ pub struct AtomicFile {
     out: BufWriter<File>,
     /// The temporary file; `None` for a device or a pipe.
     temporary: Option<Temporary>,
-    /// The permissions of the replaced file.
-    permissions: Option<Permissions>,
 }
 
 impl AtomicFile {
@@ -174,16 +175,20 @@ impl AtomicFile {
     /// The folder does not exist, permission is denied, or the name is that of a folder.
     pub fn create(path: &Path) -> Result<AtomicFile, ExportError> {
         let fail = |error: io::Error| ExportError::new(path, ExportErrorKind::from_opening(path, error));
-        let begun = |target: &Path, file, temporary, permissions| AtomicFile {
+        let begun = |target: &Path, file, temporary| AtomicFile {
             path: path.to_path_buf(),
             target: target.to_path_buf(),
             out: BufWriter::new(file),
             temporary,
-            permissions,
         };
 
-        // A link is followed, so that its target is replaced and not the link. A dangling link is replaced itself.
-        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        // A link is followed, so that its target is replaced and not the link. A dangling link is replaced itself. The path
+        // is absolute, in case the current directory changes before the file is complete.
+        let target = fs::canonicalize(path).or_else(|error| {
+            let name = path.file_name().ok_or(error)?;
+            fs::canonicalize(directory_of(path)).map(|directory| directory.join(name))
+        });
+        let target = target.unwrap_or_else(|_| path.to_path_buf());
         let before = fs::metadata(&target).ok();
         if let Some(before) = &before {
             if before.is_dir() {
@@ -191,19 +196,30 @@ impl AtomicFile {
             }
             if !before.is_file() {
                 let device = File::options().write(true).open(&target).map_err(fail)?;
-                return Ok(begun(&target, device, None, None));
+                return Ok(begun(&target, device, None));
             }
             if before.permissions().readonly() {
                 return Err(ExportError::new(path, ExportErrorKind::NotPermitted));
             }
         }
-        let named_as_directory = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
+        let name = path.as_os_str().to_string_lossy();
+        let named_as_directory = name.strip_suffix('.').unwrap_or(&name).ends_with(std::path::is_separator);
         if named_as_directory || target.file_name().is_none() {
             return Err(ExportError::new(path, ExportErrorKind::IsDirectory));
         }
+        // A name that the system does not take, such as one that is too long, would otherwise fail only at the renaming.
+        if let Err(error) = fs::symlink_metadata(&target)
+            && error.kind() != io::ErrorKind::NotFound
+        {
+            return Err(fail(error));
+        }
 
         let (temporary, file) = Temporary::create(directory_of(&target)).map_err(fail)?;
-        Ok(begun(&target, file, Some(temporary), before.map(|before| before.permissions())))
+        if let Some(before) = before {
+            // Before anything is written, which others may not be allowed to read.
+            file.set_permissions(before.permissions()).map_err(fail)?;
+        }
+        Ok(begun(&target, file, Some(temporary)))
     }
 
     /// Flushes the file to the disk and renames it.
@@ -211,14 +227,11 @@ impl AtomicFile {
     /// # Errors
     /// The disk is full, or the file cannot be renamed.
     pub fn commit(self) -> Result<(), ExportError> {
-        let AtomicFile { path, target, out, temporary, permissions } = self;
+        let AtomicFile { path, target, out, temporary } = self;
         let fail = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_opening(&path, error));
         let fail_to_write = |error: io::Error| ExportError::new(&path, ExportErrorKind::from_writing(error));
         let file = out.into_inner().map_err(|error| fail_to_write(error.into_error()))?;
         let Some(temporary) = temporary else { return Ok(()) };
-        if let Some(permissions) = permissions {
-            file.set_permissions(permissions).map_err(fail)?;
-        }
         file.sync_all().map_err(fail_to_write)?;
         drop(file);
         temporary.rename(&target).map_err(fail)
@@ -282,5 +295,18 @@ impl Drop for Temporary {
     fn drop(&mut self) {
         // A failure here can only be ignored; the error that led here is the one to report.
         let _ = fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_stays_in_its_directory_if_the_current_one_changes() {
+        let file = AtomicFile::create(Path::new("relative name")).expect("a file");
+        let temporary = file.temporary.as_ref().expect("a file");
+        assert!(file.target.is_absolute() && temporary.path.is_absolute(), "{:?}", file.target);
+        assert_eq!(file.path, Path::new("relative name"));
     }
 }

@@ -62,9 +62,11 @@ impl<'a> Picture<'a> {
     /// Checks that the sizes are consistent with each other and with the number of bytes.
     pub fn check(&self) -> Result<(), PictureError> {
         let limit = 1..=MAX_SIDE as usize;
-        let shape = self.shape;
-        if !limit.contains(&self.width) || !limit.contains(&self.height) || shape.width == 0 || shape.height == 0 {
+        if !limit.contains(&self.width) || !limit.contains(&self.height) {
             return Err(PictureError::Size { width: self.width, height: self.height });
+        }
+        if self.shape.width == 0 || self.shape.height == 0 {
+            return Err(PictureError::Shape(self.shape));
         }
         // The last row needs no padding after it.
         let needed = self.pitch.checked_mul(self.height - 1).and_then(|bytes| bytes.checked_add(self.width));
@@ -85,18 +87,27 @@ impl<'a> Picture<'a> {
 
 /// The pixel of `from` that contains the centre of pixel `at` of `to`: floor((at + ½) · from / to).
 pub(crate) fn source(at: usize, to: usize, from: usize) -> usize {
-    (2 * at + 1) * from / (2 * to)
+    ((2 * at as u64 + 1) * from as u64 / (2 * to as u64)) as usize
 }
 
 /// The reason why a picture cannot be exported.
 #[derive(Clone, PartialEq)]
 #[non_exhaustive]
 pub enum PictureError {
-    /// A side is 0 or above 16,384 pixels, or a pixel has no size.
+    /// A side is 0 or above 16,384 pixels.
     Size {
         /// The number of pixels in a row.
         width: usize,
         /// The number of rows.
+        height: usize,
+    },
+    /// A side of the pixels' shape is 0.
+    Shape(PixelShape),
+    /// The part asked for is not within the picture.
+    Part {
+        /// The number of pixels in a row of the picture.
+        width: usize,
+        /// The number of rows of the picture.
         height: usize,
     },
     /// There are fewer bytes than the rows need, or the rows overlap.
@@ -120,6 +131,12 @@ impl fmt::Display for PictureError {
         match self {
             PictureError::Size { width, height } => {
                 write!(f, "a picture of {width} x {height} pixels: each side must be 1 to {}", MAX_SIDE)
+            }
+            PictureError::Shape(shape) => {
+                write!(f, "pixels of shape {} x {}: neither side may be 0", shape.width, shape.height)
+            }
+            PictureError::Part { width, height } => {
+                write!(f, "the part is not within the picture of {width} x {height} pixels")
             }
             PictureError::Bytes { bytes, pitch } => {
                 write!(f, "{bytes} bytes do not hold the picture's rows at a pitch of {pitch}")

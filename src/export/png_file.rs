@@ -74,10 +74,10 @@ impl Png {
     /// [`PictureError`] if the picture's sizes do not fit its bytes, or if the file does not fit in memory.
     pub fn encode(self, picture: &Picture<'_>) -> Result<Vec<u8>, PictureError> {
         let scaled = Scaled::new(picture, self.scale)?;
-        let mut file = Vec::new();
+        let mut file = InMemory(Vec::new());
         match self.write(picture, &scaled, &mut file) {
-            Ok(()) => Ok(file),
-            // Writing to a vector only fails for lack of memory, and the sizes have been checked.
+            Ok(()) => Ok(file.0),
+            // Only for lack of memory: the sizes have been checked.
             Err(_) => Err(PictureError::Memory { bytes: scaled.width as usize * scaled.height as usize }),
         }
     }
@@ -115,6 +115,21 @@ impl Png {
         }
         data.finish().map_err(reason)?;
         header.finish().map_err(reason)
+    }
+}
+
+/// A file in memory. Writing to a vector would end the program for lack of it.
+struct InMemory(Vec<u8>);
+
+impl Write for InMemory {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.try_reserve(bytes.len())?;
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
     }
 }
 

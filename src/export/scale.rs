@@ -123,7 +123,7 @@ impl<'a> Scaled<'a> {
     /// A part that is not within the result; not enough memory.
     pub fn part(&self, columns: Range<usize>, rows: Range<usize>) -> Result<Vec<u8>, PictureError> {
         let (Some(columns), Some(rows)) = (self.columns.get(columns), self.rows.get(rows)) else {
-            return Err(PictureError::Size { width: self.width as usize, height: self.height as usize });
+            return Err(PictureError::Part { width: self.width as usize, height: self.height as usize });
         };
         let bytes = columns.len() * rows.len();
         let mut part = Vec::new();
@@ -147,7 +147,7 @@ impl<'a> Scaled<'a> {
         let PixelShape { width: across, height: down } = self.picture.shape;
         let x = u64::from(self.width) * u64::from(down) * self.picture.height as u64;
         let y = u64::from(self.height) * u64::from(across) * self.picture.width as u64;
-        let common = greatest_common_divisor(x, y);
+        let common = greatest_common_divisor(x, y).max(1);
         let (mut x, mut y) = (x / common, y / common);
         // PNG integers end at 2^31 − 1. Unusual shapes and sizes may need more; the ratio is then
         // rounded.

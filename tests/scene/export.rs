@@ -8,7 +8,8 @@ use crate::support::picture;
 use crate::support::tried::Tried;
 use crate::support::workspace::names_in;
 use mode13h::export::{
-    self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Png, Scale, write_atomically,
+    self, ExportErrorKind, MAX_SIDE, Picture, PictureError, PixelShape, Png, Scale, Scaled, check_writable,
+    write_atomically,
 };
 use mode13h::palette::{Palette, Rgb, builtin};
 use mode13h::vga::Vga;
@@ -181,13 +182,20 @@ fn pictures_whose_sizes_do_not_fit_are_refused() {
         ("no height", Picture { height: 0, ..good }),
         ("too wide", Picture { width: side, pitch: side, ..good }),
         ("too high", Picture { height: side, pitch: 0, ..good }),
-        ("no pixel width", Picture { shape: PixelShape { width: 0, height: 1 }, ..good }),
-        ("no pixel height", Picture { shape: PixelShape { width: 1, height: 0 }, ..good }),
     ] {
         for rgb in [false, true] {
             let encoded = Png { scale: Scale::One, rgb }.encode(&picture);
             assert!(matches!(encoded, Err(PictureError::Size { .. })), "{what}");
         }
+    }
+    for (width, height) in [(0, 1), (1, 0), (0, 0)] {
+        let error = Picture { shape: PixelShape { width, height }, ..good }.check().expect_err("no size");
+        assert_eq!(error.to_string(), format!("pixels of shape {width} x {height}: neither side may be 0"));
+    }
+    let scaled = Scaled::new(&good, Scale::One).expect("a picture");
+    for (columns, rows) in [(0..11, 0..1), (0..1, 10..11)] {
+        let error = scaled.part(columns, rows).expect_err("beyond it");
+        assert_eq!(error.to_string(), "the part is not within the picture of 10 x 10 pixels");
     }
     for (what, picture) in [
         ("a byte short", Picture { pixels: &pixels[1..], ..good }),
@@ -284,7 +292,7 @@ fn f4_a_writer_that_panics_leaves_the_old_one_whole() {
 
 #[test]
 fn f4_each_reason_has_its_own_error_with_the_path() {
-    let mut tried = Tried::new("f4_each_reason_has_its_own_error_with_the_path", 13);
+    let mut tried = Tried::new("f4_each_reason_has_its_own_error_with_the_path", 18);
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("file");
     fs::write(&file, "a file").expect("written");
@@ -300,10 +308,20 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
         assert!(error.to_string().ends_with(says), "{error}");
         tried.add(3);
     }
-    for path in [folder.path().to_path_buf(), folder.path().join(".."), folder.path().join("new/"), "".into()] {
+    let directories = [folder.path().to_path_buf(), folder.path().join(".."), "".into()];
+    let unnamed = write_atomically("", nothing).expect_err("no name");
+    assert_eq!(unnamed.to_string(), "the file has no name");
+    for path in directories.into_iter().chain(["new/", "new/."].map(|name| folder.path().join(name))) {
         let error = write_atomically(&path, nothing).expect_err("a folder");
         assert!(matches!(error.kind, ExportErrorKind::IsDirectory), "{error}");
         tried.add(1);
+    }
+    // Names that no file can have are refused before the file is made.
+    for name in ["a".repeat(70_000), String::from("a\0b")] {
+        let path = folder.path().join(name);
+        write_atomically(&path, |_| panic!("this would be work for nothing")).expect_err("no such name");
+        check_writable(&path).expect_err("no such name");
+        tried.add(2);
     }
 
     let mut permissions = fs::metadata(&file).expect("metadata").permissions();
@@ -314,6 +332,28 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
     assert_eq!(fs::read(&file).expect("read"), b"a file");
     assert_eq!(names_in(folder.path()), ["file"]);
     tried.add(3);
+}
+
+/// What replaces a private file is private from its first byte.
+#[cfg(unix)]
+#[test]
+fn a_private_file_is_replaced_by_a_private_one() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("secret");
+    fs::write(&path, "old").expect("written");
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).expect("set");
+    let modes = || -> Vec<u32> {
+        let files = fs::read_dir(folder.path()).expect("a folder");
+        files.map(|file| file.and_then(|file| file.metadata()).expect("a file").permissions().mode() & 0o777).collect()
+    };
+    write_atomically(&path, |out| {
+        assert_eq!(modes(), [0o600; 2]);
+        out.write_all(b"new")
+    })
+    .expect("written");
+    assert_eq!((modes(), fs::read(&path).expect("read")), (vec![0o600], b"new".to_vec()));
 }
 
 #[test]
