@@ -1,6 +1,7 @@
 //! A frame as a target of `embedded-graphics`: text, lines, shapes and images on the same bytes.
 
 use core::convert::Infallible;
+use core::ops::Range;
 
 use embedded_graphics::Pixel;
 use embedded_graphics::draw_target::DrawTarget;
@@ -69,16 +70,27 @@ impl DrawTarget for Frame<'_> {
     }
 
     fn fill_solid(&mut self, area: &Rectangle, Index(index): Index) -> Result<(), Infallible> {
-        let area = area.intersection(&self.bounding_box());
-        let (x, width) = (area.top_left.x.max(0) as usize, area.size.width as usize);
-        for y in area.rows() {
-            // Not negative: the area lies within the frame.
-            if let Some(pixels) = self.row_mut(y as u32).and_then(|row| row.get_mut(x..x + width)) {
+        let [columns, rows] = clipped(area, self.width() as usize, self.height() as usize);
+        for y in rows {
+            // Within the frame.
+            if let Some(pixels) = self.row_mut(y as u32).and_then(|row| row.get_mut(columns.clone())) {
                 pixels.fill(index);
             }
         }
         Ok(())
     }
+}
+
+/// The columns and rows of a rectangle on a target of this size. The intersection of two `Rectangle`s overflows if one
+/// reaches beyond the numbers of i32.
+pub(crate) fn clipped(area: &Rectangle, width: usize, height: usize) -> [Range<usize>; 2] {
+    let along = |from: i32, length: u32, end: usize| {
+        let end = i64::try_from(end).unwrap_or(i64::MAX);
+        // 0 to the target's end.
+        let within = |at: i64| at.clamp(0, end) as usize;
+        within(from.into())..within(i64::from(from) + i64::from(length))
+    };
+    [along(area.top_left.x, area.size.width, width), along(area.top_left.y, area.size.height, height)]
 }
 
 #[cfg(test)]
@@ -89,6 +101,29 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+
+    #[test]
+    fn rectangles_may_reach_beyond_all_numbers() {
+        let most = i32::MAX;
+        for (from, length, expected) in [
+            (10, most as u32, 10..20),
+            (10, u32::MAX, 10..20),
+            (-5, most as u32, 0..20),
+            (-most, u32::MAX, 0..20),
+            (most, u32::MAX, 20..20),
+            (i32::MIN, most as u32, 0..0),
+            (-5, 5, 0..0),
+        ] {
+            let area = Rectangle::new(Point::new_equal(from), Size::new_equal(length));
+            let ends: [Range<usize>; 2] = clipped(&area, 20, 20);
+            assert_eq!(ends, [expected.clone(), expected.clone()], "{from} {length}");
+            let (mut filled, mut pixels) = ([0; 400], [0; 400]);
+            let mut frame = Frame::new(&mut filled, 20, 20, 20).expect("a frame");
+            let Ok(()) = frame.fill_solid(&area, Index(7));
+            expected.clone().for_each(|y| pixels[20 * y..][expected.clone()].fill(7));
+            assert_eq!(filled, pixels, "{from} {length}");
+        }
+    }
 
     proptest! {
         /// A filled rectangle gives the same bytes as setting each of its pixels that the band holds.

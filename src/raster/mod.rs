@@ -80,6 +80,8 @@ pub use depth::{Cell, DepthBuffer};
 pub use draw_stats::DrawStats;
 #[cfg(feature = "embedded-graphics")]
 pub use draw_target::Index;
+#[cfg(all(feature = "embedded-graphics", feature = "window"))]
+pub(crate) use draw_target::clipped;
 pub use error::RasterError;
 pub use frame::{Frame, Rect};
 pub use interpolation::Interpolation;

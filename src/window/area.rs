@@ -24,8 +24,8 @@ impl Area {
 
     /// The largest centred rectangle of this aspect ratio in a window.
     pub(super) fn of_shape((across, down): (usize, usize), width: usize, height: usize) -> Area {
-        // A picture has at most 2¹⁴ pixels of 2¹⁶ per side: the products are below 2⁶³ for windows of up to 2³² pixels.
-        let (w, h, across, down) = (width as u64, height as u64, across as u64, down as u64);
+        // A picture has at most 2¹⁴ pixels of 2¹⁶ per side: the products are below 2⁹⁴.
+        let (w, h, across, down) = (width as u128, height as u128, across as u128, down as u128);
         let (w, h) = if w * down <= h * across { (w, w * down / across) } else { (h * across / down, h) };
         let (w, h) = (w as usize, h as usize);
         Area { left: (width - w) / 2, top: (height - h) / 2, width: w, height: h }

@@ -72,10 +72,12 @@ impl<'a> Canvas<'a> {
         if rows == 0 {
             return;
         }
+        // Longer sides also leave only the first pixel of the picture on a canvas that fits in memory.
+        let [width, height] = [area.width, area.height].map(|side| side.min(isize::MAX as usize / 2));
         for (y, row) in self.rows_mut(area) {
-            let from = &colors[source(y, area.height, rows) * columns..][..columns];
+            let from = &colors[source(y, height, rows) * columns..][..columns];
             for (x, pixel) in row.iter_mut().enumerate() {
-                *pixel = from[source(x, area.width, columns)].to_u32();
+                *pixel = from[source(x, width, columns)].to_u32();
             }
         }
     }
@@ -87,12 +89,13 @@ mod draw_target {
 
     use embedded_graphics::Pixel;
     use embedded_graphics::draw_target::DrawTarget;
-    use embedded_graphics::geometry::{OriginDimensions, Point, Size};
+    use embedded_graphics::geometry::{OriginDimensions, Size};
     use embedded_graphics::pixelcolor::{Rgb888, RgbColor};
     use embedded_graphics::primitives::Rectangle;
 
     use super::{Area, Canvas};
     use crate::palette::Rgb;
+    use crate::raster::clipped;
 
     fn rgb(color: Rgb888) -> Rgb {
         Rgb::new(color.r(), color.g(), color.b())
@@ -100,8 +103,8 @@ mod draw_target {
 
     impl OriginDimensions for Canvas<'_> {
         fn size(&self) -> Size {
-            // A window's sides are far below 2³².
-            Size::new(self.width as u32, self.height as u32)
+            let [width, height] = [self.width, self.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+            Size::new(width, height)
         }
     }
 
@@ -121,11 +124,9 @@ mod draw_target {
         }
 
         fn fill_solid(&mut self, area: &Rectangle, color: Rgb888) -> Result<(), Infallible> {
-            let area = area.intersection(&Rectangle::new(Point::zero(), self.size()));
-            // Not negative: the area is on the canvas.
-            let (left, top) = (area.top_left.x as usize, area.top_left.y as usize);
-            let (width, height) = (area.size.width as usize, area.size.height as usize);
-            self.fill(Area { left, top, width, height }, rgb(color));
+            let [columns, rows] = clipped(area, self.width, self.height);
+            let (left, top) = (columns.start, rows.start);
+            self.fill(Area { left, top, width: columns.len(), height: rows.len() }, rgb(color));
             Ok(())
         }
     }
@@ -188,5 +189,24 @@ mod tests {
         let line = line.into_styled(PrimitiveStyle::with_stroke(Rgb888::RED, 1));
         let pixels = drawn(|canvas| line.draw(canvas).expect("it cannot fail"));
         assert_eq!(pixels, each(Area { left: 0, top: 2, width: 7, height: 1 }, |_, _| 0xFF_0000));
+        let most = Rectangle::new(Point::new(3, 2), Size::new_equal(u32::MAX));
+        let pixels = drawn(|canvas| canvas.fill_solid(&most, Rgb888::RED).expect("it cannot fail"));
+        assert_eq!(pixels, each(Area { left: 3, top: 2, width: 4, height: 3 }, |_, _| 0xFF_0000));
+    }
+
+    #[test]
+    fn the_largest_numbers_do_no_harm() {
+        let most = usize::MAX;
+        let white = [Rgb::WHITE; 4];
+        for (left, width) in [(0, 1 << (usize::BITS - 1)), (0, most), (most, most), (3, most - 1)] {
+            let area = Area { left, top: left, width, height: width };
+            let stretched = drawn(|canvas| canvas.stretch(area, &white, 2));
+            assert_eq!(stretched, drawn(|canvas| canvas.fill(area, Rgb::WHITE)), "{left} {width}");
+        }
+        for (width, height) in [(most, 1), (1, most), (most, most), (most, 0)] {
+            let Area { left, top, width: w, height: h } = Area::within(width, height);
+            assert!(left + w <= width && top + h <= height, "{width} x {height}");
+        }
+        assert!(Canvas::new(&mut [], most, 0).is_none_or(|canvas| canvas.picture().width == 0));
     }
 }

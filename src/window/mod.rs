@@ -276,6 +276,7 @@ impl Window {
     ///
     /// [`WindowError`] if the display went away.
     pub fn rest(&mut self, longest: Duration) -> Result<Flow, WindowError> {
+        self.before = self.now;
         let (size, end) = (self.size(), self.begun.checked_add(longest));
         loop {
             self.wait(LOOK.min(longest));
