@@ -333,19 +333,22 @@ impl ObjectView {
         let reach = |i: usize| dot(matrix[i].map(f64::abs), far) + offset[i].abs();
         // As in `depths`: more than the error of either vertex path.
         let slack: Row = core::array::from_fn(|i| reach(i) / 4096.0);
+        // The products of each coordinate with its end, once for all corners.
+        let products: [[Row; 2]; 3] = matrix.map(|row| [min, max].map(|end| core::array::from_fn(|i| row[i] * end[i])));
         let (mut nearest, mut farthest) = (f64::INFINITY, f64::NEG_INFINITY);
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+        // Like `min` and `max`, these skip NaN in `b`, but compile to one instruction.
+        let lesser = |a: f64, b: f64| if b < a { b } else { a };
+        let greater = |a: f64, b: f64| if b > a { b } else { a };
         for corner in 0..8 {
-            let p: Row = core::array::from_fn(|i| if corner >> i & 1 == 0 { min[i] } else { max[i] });
-            let at = |i: usize| dot(matrix[i], p) + offset[i];
-            let w = at(2);
-            nearest = nearest.min(w);
-            farthest = farthest.max(w);
+            let [x, y, w] = core::array::from_fn(|i| {
+                products[i][corner & 1][0] + products[i][corner >> 1 & 1][1] + products[i][corner >> 2][2] + offset[i]
+            });
+            (nearest, farthest) = (lesser(nearest, w), greater(farthest, w));
             // Only valid for corners in front of the eye. If one is not, the object crosses the
             // near plane, and these are not used.
-            for i in 0..2 {
-                low[i] = low[i].min(at(i) / w);
-                high[i] = high[i].max(at(i) / w);
+            for (i, at) in [x / w, y / w].into_iter().enumerate() {
+                (low[i], high[i]) = (lesser(low[i], at), greater(high[i], at));
             }
         }
         let (nearest, farthest) = (nearest - slack[2], farthest + slack[2]);

@@ -51,7 +51,8 @@ pub struct Material {
     /// ks: the share of a light that it reflects specularly. 0 means no highlight.
     pub specular: f32,
     /// s: the shininess, the exponent of the highlight: 1 gives a broad one, 100 a point. 0 means no highlight,
-    /// whatever `specular` is, as in modelling programs. A negative number is an error when a scene is drawn.
+    /// whatever `specular` is, as in modelling programs. Above 10⁹ it counts as 10⁹, and a negative number is an error
+    /// when a scene is drawn.
     pub shininess: f32,
     /// The palette entries, for a material that is lit on one channel and has no texture.
     pub ramp: RampChoice,

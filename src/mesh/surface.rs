@@ -17,7 +17,8 @@ pub struct Surface {
     pub specular: [f32; 3],
     /// `Ns`: the specular exponent, usually 0 to 1,000. 0, or none in the file, means no highlight.
     pub shininess: f32,
-    /// `d`, or 1 − `Tr`: how much the surface hides of what lies behind it, 0 to 1; 1 is opaque.
+    /// `d`, or 1 − `Tr`: how much the surface hides of what lies behind it, 0 to 1. 1 is opaque, and so is 0, which
+    /// some exporters write for opaque surfaces.
     pub opacity: f32,
     /// `map_Kd`: the path of a texture, joined to the folder of the MTL file.
     pub texture: Option<String>,

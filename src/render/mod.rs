@@ -186,7 +186,8 @@ impl Renderer {
     /// Bounds the error of an object's linear shades against light at every pixel, in the last frame drawn, from
     /// normals, lights and vertices. It is in shades of 1/255 of full intensity, without rounding. `object` is the
     /// object's index. `None` if the object is flat-shaded, lit at every pixel, split, out of sight, on the 16.16 path, or does
-    /// not exist; if a material has a custom response; or if the object has changed since its vertices were computed.
+    /// not exist; if a material has a custom response; or if the object or its plan has changed since its vertices were
+    /// computed.
     #[must_use]
     pub fn linear_error(&self, scene: &Scene, object: usize) -> Option<f64> {
         let plan = self.cache.plan.objects().get(object)?;

@@ -41,7 +41,8 @@ impl SurfaceMaterial {
                 ambient: f64::from(material.ambient) * f64::from(ambient),
                 diffuse: f64::from(material.diffuse),
                 specular: f64::from(if has_highlight { material.specular } else { 0.0 }),
-                shininess: f64::from(material.shininess),
+                // Unit vectors are rounded, and for a greater exponent the power of a cosine just above 1 may be infinite.
+                shininess: f64::from(material.shininess).min(1e9),
                 color: material.color.map(f64::from),
                 highlight: material.highlight.map(f64::from),
             },

@@ -31,9 +31,11 @@ impl Camera {
     #[must_use]
     pub fn framing(centre: Vec3, radius: f32) -> Self {
         // Half the angle that the sphere subtends, and the distance at which its sine gives the radius. The distance is
-        // at most f32::MAX, so even a sphere of that size is in front of the eye.
+        // at most f32::MAX, so even a sphere of that size is in front of the eye; at least far enough that the eye
+        // differs from the centre in f32.
         let half = libm::atanf(Self::FILL * libm::tanf(Self::FIELD_OF_VIEW.to_radians() as f32 / 2.0));
-        let distance = (radius / libm::sinf(half)).clamp(f32::MIN_POSITIVE, f32::MAX);
+        let least = (centre.z.abs() / 1_048_576.0).max(f32::MIN_POSITIVE);
+        let distance = (radius / libm::sinf(half)).clamp(least, f32::MAX);
         let eye = (centre + Vec3::Z * distance).clamp(Vec3::splat(-f32::MAX), Vec3::splat(f32::MAX));
         let near = Self::near_for(distance);
         Self { eye, target: centre, up: Vec3::Y, field_of_view: Self::FIELD_OF_VIEW, near }

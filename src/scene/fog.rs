@@ -28,7 +28,7 @@ impl Fog {
         Ok(())
     }
 
-    /// The share of fog at a distance, from 0 (none) to 1 (nothing but fog).
+    /// The share of fog at a distance, from 0 (none) to 1 (nothing but fog). It may be NaN if `end` is not above `start`.
     #[must_use]
     pub fn level(&self, distance: f64) -> f64 {
         let (start, end) = (f64::from(self.start), f64::from(self.end));

@@ -173,13 +173,13 @@ impl Viewpoint {
             target.iter().fold(1024.0 * f64::from(f32::MIN_POSITIVE), |most, c| most.max(c.abs() / 1_048_576.0));
         let distance = (depth - z).max(least);
         let is_within = |c: &f64| c.abs() <= f64::from(f32::MAX);
-        if ![target, [front, back, 0.0]].iter().chain(&points).flatten().all(is_within) {
+        let eye = added(target, towards, distance);
+        if ![target, eye, [front, back, 0.0]].iter().chain(&points).flatten().all(is_within) {
             return None;
         }
         let near = f64::from(Camera::near_for(distance as f32)).min((z + distance - front) / 2.0);
         let near = (near as f32).max(f32::MIN_POSITIVE);
-        let (eye, target) = (narrow(added(target, towards, distance)), narrow(target));
-        Some(Camera { eye, target, up: self.up, field_of_view: self.field_of_view, near })
+        Some(Camera { eye: narrow(eye), target: narrow(target), up: self.up, field_of_view: self.field_of_view, near })
     }
 }
 
@@ -482,11 +482,12 @@ mod tests {
             vec![Vec3::ZERO, Vec3::X * f32::from_bits(1), Vec3::Y * f32::from_bits(1)],
             vec![far, -far, Vec3::X],
             vec![far * 0.4, far * -0.4, Vec3::X],
+            vec![far * 0.8, far * -0.8, Vec3::X],
         ];
         for positions in meshes {
             let mut object = Object::new(Mesh::new(positions.clone(), vec![[0, 1, 2]]).expect("a mesh")).centred();
             for tilt in [0.0, 0.35, TAU / 4.0] {
-                for position in [Vec3::ZERO, Vec3::splat(1e6)] {
+                for position in [Vec3::ZERO, Vec3::splat(1e6), Vec3::splat(1e9), Vec3::splat(-1e30)] {
                     object.angles = [tilt, 0.0, 0.0].map(Angle::from_radians);
                     object.position = position;
                     let camera = Camera::framing_turn(&object);
@@ -495,6 +496,23 @@ mod tests {
                     assert!(camera.near < camera.eye.z - camera.target.z, "{positions:?} {tilt}: {camera:?}");
                 }
             }
+        }
+    }
+
+    /// Wherever a camera is placed, it has a direction, and cuts nothing of what it frames.
+    #[test]
+    fn distant_and_huge_things_are_seen_whole() {
+        for (centre, radius) in [(1e9, 1.0), (-1e20, 1.0), (3e38, 1e30), (0.0, 1.0), (5.0, 0.0)] {
+            let camera = Camera::framing(Vec3::Z * centre, radius);
+            let made = crate::view::View::new(&camera, crate::view::Screen::MODE_13H);
+            assert!(made.is_ok() && camera.eye != camera.target, "{centre} {radius}: {camera:?}");
+        }
+        for size in [1.0, 1e30, 1e38, 3e38] {
+            let camera = Scene::showing(Object::new(shapes::cube()).scaled(size)).camera;
+            // The cube's corners are on the unit sphere.
+            let front = f64::from(size) / libm::sqrt(3.0);
+            let near = f64::from(camera.eye.z) - f64::from(camera.near);
+            assert!(near >= front, "{size}: {camera:?}");
         }
     }
 

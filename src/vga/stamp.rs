@@ -47,7 +47,8 @@ impl Clone for Stamp {
 #[cfg(target_has_atomic = "ptr")]
 #[cold]
 fn next_block(_last: u64) -> u64 {
-    // Wraps after 2⁶⁴ accesses, or 2⁵² where pointers have 32 bits.
+    // Wraps after 2⁴⁴ blocks, or 2³² where pointers have 32 bits. A card takes one for every 2²⁰ accesses, and each clone
+    // its own.
     (BLOCKS.fetch_add(1, Ordering::Relaxed) as u64).wrapping_mul(BLOCK)
 }
 

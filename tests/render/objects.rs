@@ -3,7 +3,7 @@
 use mode13h::Angle;
 use mode13h::glam::{Vec2, Vec3};
 use mode13h::light::{Light, LightResponse};
-use mode13h::mesh::{Surface, shapes};
+use mode13h::mesh::{Mesh, Surface, shapes};
 use mode13h::palette::Rgb;
 use mode13h::plan::Effect;
 use mode13h::raster::Frame;
@@ -314,4 +314,30 @@ fn vertices_with_more_fraction_bits_than_there_are_are_refused() {
     scene.settings.vertex_bits = Some(9);
     let refused = Renderer::new().draw(&scene, &mut Vga::new());
     assert!(matches!(refused, Err(RenderError::Settings(_))));
+}
+
+/// However great the shininess, a highlight of one colour leaves the light of the other channels: the power of a rounded
+/// cosine just above 1 is finite.
+#[test]
+fn a_great_shininess_leaves_the_ambient_light() {
+    let towards = Vec3::new(0.6, 0.0, 0.8);
+    let mesh = Mesh::with_normals(
+        [[-1.0, -1.0], [1.0, -1.0], [0.0, 1.0]].map(|[x, y]| Vec3::new(0.8 * x, y, -0.6 * x)).to_vec(),
+        vec![towards; 3],
+        vec![[0, 1, 2]],
+    );
+    let mut scene = Scene::new();
+    let id = scene.add(Object::new(mesh.expect("a triangle")));
+    (scene[id].materials[0].color, scene[id].materials[0].specular) = ([1.0, 0.9, 0.9], 1.0);
+    scene.camera.eye = towards * 1e4;
+    scene.camera.field_of_view = Angle::from_degrees(0.02);
+    scene.ambient = 1.0;
+    scene.add_light(Light::sun(towards).with_color([1.0, 0.0, 0.0]));
+    scene.settings.accuracy = Some(Shading::Phong.into());
+    let mut with = |shininess: f32| {
+        scene[id].materials[0].shininess = shininess;
+        drawn(&scene)
+    };
+    let expected = with(1e9);
+    assert!([1e11, 1e12, 1e20, f32::MAX].into_iter().all(|shininess| with(shininess) == expected));
 }

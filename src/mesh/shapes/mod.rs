@@ -9,7 +9,7 @@
 //! | [`cube`] | yes | yes | |
 //! | [`sphere`] | yes | yes | y |
 //! | [`torus`] | yes | no | z: seen through the hole from the front |
-//! | [`cone`] | yes | yes | y, apex up |
+//! | [`cone`] | yes | up to 754 slices | y, apex up |
 //! | [`cylinder`] | yes | yes | y |
 //! | [`wall`] | no | no | faces +z |
 //! | [`teapot`] | no | no | y up, spout to +x |

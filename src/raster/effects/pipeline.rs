@@ -28,7 +28,8 @@ pub enum ShadeSource<'a> {
     /// [`GouraudVintage`](Interpolation::GouraudVintage) contributes only the shades; coverage stays exact, because the
     /// values of all stages are in range only inside the triangle.
     Shaded(Interpolation),
-    /// [`Attributes::slope`](super::Attributes::slope), linear on the screen: row and column of the shade in the table.
+    /// [`Attributes::slope`](super::Attributes::slope), linear on the screen: column and row of the shade in the
+    /// table. With channels the table is ignored, and the corners' channels are interpolated.
     NormalTable(&'a [u8; 65_536]),
     /// [`Attributes::lit`](super::Attributes::lit), linear on the face, lit at every pixel.
     Lit(&'a dyn PixelLighting),

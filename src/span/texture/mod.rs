@@ -158,7 +158,8 @@ impl<'a> Levels<'a> {
         Self::deepest(self.ubits, self.vbits)
     }
 
-    /// The texels of a level from 1 to the last. For a higher level it returns the last one, for level 0 `None`.
+    /// The texels of a level from 1 to the last. For a higher level it returns the last one, for level 0, and if the image
+    /// has no levels, `None`.
     #[must_use]
     pub fn get(self, level: u32) -> Option<Texels<'a>> {
         // At most 7.
