@@ -1,5 +1,6 @@
 //! Words of text formats.
 
+use std::path::Path;
 use std::str::FromStr;
 
 use super::ModelFileErrorKind;
@@ -12,6 +13,16 @@ pub(super) fn words(rest: &[u8]) -> impl Iterator<Item = &[u8]> {
 /// A name or a path: the rest of the line, which may contain spaces.
 pub(super) fn name(rest: &[u8]) -> String {
     String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+}
+
+/// The path of a file named in another, relative to its folder. If there is no such file, Windows' separators and comments,
+/// which are hardly ever intended as parts of a name, are taken for what they are.
+pub(super) fn sibling_path(path: &Path, file: &str) -> String {
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let slashed = file.replace('\\', "/");
+    let uncommented = slashed.split(" #").next().unwrap_or_default().trim_end();
+    let found = [file, &slashed, uncommented].into_iter().find(|file| folder.join(file).exists());
+    folder.join(found.unwrap_or(&slashed)).to_string_lossy().into_owned()
 }
 
 /// Parses a word as a number, which must be finite.

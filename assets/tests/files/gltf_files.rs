@@ -90,14 +90,18 @@ impl Gltf {
     }
 
     pub(crate) fn glb(&self) -> Vec<u8> {
-        let mut text = self.json("").into_bytes();
-        text.resize(text.len().next_multiple_of(4), b' ');
-        let mut body = self.bytes.clone();
-        body.resize(body.len().next_multiple_of(4), 0);
-        let word = |length: usize| (length as u32).to_le_bytes();
-        let head = [*b"glTF", word(2), word(12 + 8 + text.len() + 8 + body.len()), word(text.len()), *b"JSON"];
-        [head.as_flattened(), &text, &word(body.len()), b"BIN\0", &body].concat()
+        glb(self.json(""), &self.bytes)
     }
+}
+
+/// A file of a JSON chunk and a binary one.
+fn glb(json: String, bytes: &[u8]) -> Vec<u8> {
+    let (mut text, mut body) = (json.into_bytes(), bytes.to_vec());
+    text.resize(text.len().next_multiple_of(4), b' ');
+    body.resize(body.len().next_multiple_of(4), 0);
+    let word = |length: usize| (length as u32).to_le_bytes();
+    let head = [*b"glTF", word(2), word(12 + 8 + text.len() + 8 + body.len()), word(text.len()), *b"JSON"];
+    [head.as_flattened(), &text, &word(body.len()), b"BIN\0", &body].concat()
 }
 
 /// Positions and triangles of a shape, each point once, in the order in which the triangles use them.
@@ -151,6 +155,27 @@ fn every_container_gives_the_mesh_that_obj_gives() {
             }
         }
     }
+}
+
+/// Ten thousand buffers with the same megabyte need one megabyte, not ten gigabytes.
+#[test]
+fn buffers_share_a_file_or_a_chunk() {
+    let mut file = with_triangle("");
+    let expected = loaded(file.glb(), "a.glb").mesh;
+    file.bytes.resize(1 << 20, 0);
+    let many = |uri: &str| {
+        let buffer = format!("{{\"byteLength\":{}{uri}}}", file.bytes.len());
+        file.json(uri).replace(&buffer, &vec![buffer.as_str(); 10_000].join(","))
+    };
+    let mut reads = 0;
+    let read = |_: &Path| {
+        reads += 1;
+        Ok(file.bytes.clone())
+    };
+    let json = many(",\"uri\":\"same.bin\"");
+    let model = model_file::parse(json.as_bytes(), "a.gltf", read, &Options::default()).unwrap();
+    assert_eq!((contents(&model.mesh), reads), (contents(&expected), 1));
+    assert_eq!(contents(&loaded(glb(many(""), &file.bytes), "a.glb").mesh), contents(&expected));
 }
 
 #[test]
@@ -614,6 +639,11 @@ fn errors_say_part_or_place() {
     assert_eq!(refused(&whole[..cut]), format!("a.glb: byte {cut}: the file ends where a binary chunk is expected"));
     assert_eq!(refused(&whole[..9]), "a.glb: byte 9: the file ends where a JSON chunk is expected");
     assert_eq!(refused(b"glTF\x01\0\0\0"), "a.glb: byte 4: only glTF 2 is supported, this is 1");
+    for (version, is_read) in [("2", true), ("2.9", true), ("1.0", false), ("20", false), ("", false)] {
+        let text = with_triangle("").json("").replace("\"version\":\"2.0\"", &format!("\"version\":\"{version}\""));
+        let says = refused(text.as_bytes());
+        assert_eq!(!says.ends_with("only glTF 2 is supported"), is_read, "{version}: {says}");
+    }
     assert!(refused(b"{\n\"asset\": 7\n}").starts_with("a.glb:2: not glTF: invalid type: integer `7`"));
     let missing = "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":3,\"uri\":\"no.bin\"}]}";
     assert_eq!(refused(missing.as_bytes()), "a.glb: buffers[0]: no.bin: entity not found");

@@ -303,6 +303,7 @@ fn errors_say_line_or_byte() {
         (format!("{header}{rows}-1\n"), "a.ply:13: expected the length of a list, found `-1`"),
         (format!("{header}{rows}3 0 1\n"), "a.ply:13: the file ends where a number is expected"),
         (format!("{header}0 0 0\n1 inf 0\n"), "a.ply:11: `inf` is not a finite number"),
+        (format!("{header}0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "a.ply:11: `NaN` is not a finite number"),
         (format!("{header}0 0 0\n1 a 0\n"), "a.ply:11: `a` is not a number"),
         (format!("{header}{rows}2 0 1\n"), "a.ply: no faces"),
         (header.replace("face 1", "face 0") + rows, "a.ply: no faces"),
@@ -317,6 +318,26 @@ fn errors_say_line_or_byte() {
         loaded(format!("{}{rows}1 0\n3 0 1 2\n", header.replace("face 1", "face 2")), "a.ply").warnings,
         ["a.ply:13: left out a face of fewer than 3 corners"]
     );
+}
+
+/// Scanners write NaN for points that they have not measured. They are ignored, unless a face uses one, in any order.
+#[test]
+fn points_that_were_not_measured_are_left_out() {
+    let vertices =
+        |count: u32| format!("element vertex {count}\nproperty float x\nproperty float y\nproperty float z\n");
+    let faces = "element face 1\nproperty list uchar int vertex_indices\n";
+    let text = |header: &str, rows: &str| format!("ply\nformat ascii 1.0\n{header}end_header\n{rows}");
+    let whole = text(&(vertices(3) + faces), "500000 0 0\n500001 0 0\n500000 1 0\n3 0 1 2\n");
+    let (points, face) = ("500000 0 0\nnan nan nan\n500001 0 0\n500000 1 0\nNaN 1 0\n", "3 0 2 3\n");
+    for (header, rows) in [
+        (vertices(5) + faces, format!("{points}{face}")),
+        (format!("{faces}{}", vertices(5)), format!("{face}{points}")),
+    ] {
+        assert_eq!(loaded(text(&header, &rows), "a.ply"), loaded(&*whole, "a.ply"));
+        let wrong = rows.replace("3 0 2 3", "3 0 2 4");
+        let line = 1 + text(&header, &wrong).lines().position(|line| line == "NaN 1 0").unwrap();
+        assert_eq!(refused(text(&header, &wrong), "a.ply"), format!("a.ply:{line}: `NaN` is not a finite number"));
+    }
 }
 
 /// A face gets the mean of its corners' colours, or its own, in any number type.

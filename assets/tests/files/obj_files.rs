@@ -681,7 +681,39 @@ fn library_names() {
     assert_eq!(read("mtllib one two.mtl", &["one two.mtl"]), found(""));
     assert_eq!(read("mtllib one.mtl two.mtl", &["one.mtl", "two.mtl"]), found(""));
     assert_eq!(read("mtllib parts\\one.mtl", &["parts/one.mtl"]), found("parts"));
+    assert_eq!(read("mtllib a\\one.mtl a\\two.mtl", &["a/one.mtl", "a/two.mtl"]), found("a"));
     assert_eq!(read("mtllib one.mtl two.mtl", &["one.mtl"]), (1, None));
+}
+
+/// Textures are found although their names have Windows' separators, or a comment follows; a file of exactly the name given
+/// is preferred.
+#[test]
+fn texture_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::create_dir(path("tex")).unwrap();
+    ["tex/a b.png", "c #1.png", "c"].iter().for_each(|name| std::fs::write(path(name), "").unwrap());
+    let ply = |name: &str| {
+        let vertex = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float s\nproperty float t\n";
+        let face = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+        let rows = "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+        format!("ply\nformat ascii 1.0\ncomment TextureFile {name}\n{vertex}{face}{rows}")
+    };
+    for (name, expected) in [
+        ("tex\\a b.png", "tex/a b.png"),
+        ("tex/a b.png # note", "tex/a b.png"),
+        ("c #1.png", "c #1.png"),
+        ("c # 1", "c"),
+    ] {
+        std::fs::write(path("a.obj"), format!("mtllib a.mtl\n{TRIANGLE}usemtl a\nf 1 2 3\n")).unwrap();
+        std::fs::write(path("a.mtl"), format!("newmtl a\nmap_Kd {name}\n")).unwrap();
+        std::fs::write(path("a.ply"), ply(name)).unwrap();
+        for model in ["a.obj", "a.ply"] {
+            let mesh = model_file::load(path(model)).unwrap().mesh;
+            let texture = mesh.surfaces()[0].texture.as_deref().map(Path::new);
+            assert_eq!(texture, Some(path(expected).as_path()), "{name} in {model}");
+        }
+    }
 }
 
 /// A mesh of one face in the plane z = 0, compared with that face: n − 2 triangles, none flipped, whose areas add up,

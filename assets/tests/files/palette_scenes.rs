@@ -334,9 +334,9 @@ fn highlights_are_shown_in_their_colours() {
     }
 }
 
-/// What is never visible during a round is not measured; what becomes visible later in it is.
+/// What is never visible during a loop is not measured; what becomes visible later in it is.
 #[test]
-fn a_round_is_seen_and_not_its_beginning() {
+fn a_loop_is_seen_and_not_its_beginning() {
     let mut random = Random::named("round");
     let mut scene = walls(&mut random, random_material);
     let id = scene.add(Object::new(shapes::sphere(16, 8)));
@@ -354,9 +354,9 @@ fn a_round_is_seen_and_not_its_beginning() {
     assert_eq!(auto_palette::seen(&scene).expect("a scene"), seen);
 }
 
-/// Surfaces seen for a part of each round of a motion are seen by the palette, too, however many rounds there are.
+/// Surfaces seen for a part of each loop of a motion are seen by the palette, too, however many there are.
 #[test]
-fn a_round_is_seen_whatever_moves_how_often_in_it() {
+fn a_loop_is_seen_whatever_moves_how_often_in_it() {
     use mode13h::mesh::Mesh;
     use mode13h::scene::{Motion, Moving, Path};
 

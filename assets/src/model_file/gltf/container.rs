@@ -56,7 +56,7 @@ pub(super) fn open<'b>(bytes: &'b [u8], path: &Path) -> Result<Opened<'b>, Model
     if let Some(needed) = root.extensions_required.iter().find(|name| NEEDED.contains(&name.as_str())) {
         return Err(fault(format!("needs {needed}, which is not supported")));
     }
-    if !root.asset.version.starts_with("2.") {
+    if root.asset.version.split('.').next() != Some("2") {
         return Err(fault(String::from("only glTF 2 is supported")));
     }
     // `gltf` uses these before it has checked them.

@@ -10,7 +10,7 @@ use mode13h::mesh::Surface;
 use super::line::{Lines, keyword, number, numbers};
 use super::statement::Statements;
 use crate::model_file::warnings::{LeftOut, Warnings};
-use crate::model_file::word::{name, shown_name, words};
+use crate::model_file::word::{name, shown_name, sibling_path, words};
 use crate::model_file::{ModelFileError, ModelFileErrorKind};
 
 /// The surfaces for `model.names`, in their order.
@@ -31,7 +31,7 @@ pub(super) fn surfaces(
             .find(iter::once(text.as_str()))
             .or_else(|error| if slashed == *text { Err(error) } else { files.find(iter::once(slashed.as_str())) });
         if found.is_err() && text.split_whitespace().nth(1).is_some() {
-            found = files.find(text.split_whitespace()).or(found);
+            found = files.find(slashed.split_whitespace()).or(found);
         }
         match found {
             Ok(paths) => {
@@ -238,14 +238,4 @@ fn places_otherwise(rest: &[u8]) -> bool {
             _ => false,
         }
     })
-}
-
-/// Resolves a path in an MTL file relative to the file's folder.
-fn sibling_path(path: &Path, file: &str) -> String {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    let as_written = folder.join(file);
-    // Elsewhere, Windows' separator is part of a name, but hardly ever intentionally.
-    let joined =
-        if file.contains('\\') && !as_written.exists() { folder.join(file.replace('\\', "/")) } else { as_written };
-    joined.to_string_lossy().into_owned()
 }

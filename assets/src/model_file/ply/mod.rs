@@ -2,9 +2,9 @@
 //!
 //! | read | as |
 //! |---|---|
-//! | `x`, `y`, `z` of `vertex` | positions |
+//! | `x`, `y`, `z` of `vertex` | positions; NaN where no face uses the vertex, as scans have it for missing points |
 //! | `nx`, `ny`, `nz` | normals; one of length 0 counts as missing |
-//! | `s t`, `u v` or `texture_u texture_v` of `vertex`, or a list `texcoord` of `face` | texture coordinates, if a comment `TextureFile` names the texture |
+//! | `s t`, `u v` or `texture_u texture_v` of `vertex`, or a list `texcoord` of `face` | texture coordinates, if a comment `TextureFile` names the texture; infinite ones and NaN count as 0 |
 //! | `texnumber` of `face` | which of several textures, in the order of their comments; without it, the first, with a warning |
 //! | a list `vertex_indices` or `vertex_index` of `face` | a face of three corners or more, fewer are dropped with a warning |
 //! | a list `vertex_indices` of `tristrips` | triangle strips; a negative index ends one |
@@ -18,6 +18,7 @@
 mod header;
 mod value;
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use mode13h::glam::{Vec2, Vec3};
@@ -26,8 +27,8 @@ use mode13h::palette::Rgb;
 
 use crate::model_file::colors::of_faces;
 use crate::model_file::lists::{Corner, Lists, Wide, push};
-use crate::model_file::word::without_mark;
-use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, paint};
+use crate::model_file::word::{sibling_path, without_mark};
+use crate::model_file::{Draft, ModelFileError, ModelFileErrorKind, Place, paint};
 use header::{Element, Header, Kind};
 use value::Values;
 
@@ -56,6 +57,7 @@ pub(crate) fn draft(bytes: &[u8], path: &Path) -> Result<Draft, ModelFileError> 
         };
         result.map_err(|kind| ModelFileError::at(path, values.place(), kind))?;
     }
+    reading.check(&draft.lists).map_err(|(place, kind)| ModelFileError::at(path, place, kind))?;
     reading.finish(&header, path, &mut draft);
     Ok(draft)
 }
@@ -68,6 +70,8 @@ type Done = Result<(), ModelFileErrorKind>;
 struct Reading {
     /// The number of vertices that the header declares.
     vertices: u64,
+    /// The vertices without a position, and their places.
+    missing: HashMap<u32, Place>,
     /// The colour of each vertex, or empty.
     of_vertices: Vec<Rgb>,
     /// The colour of each face, or empty.
@@ -106,16 +110,15 @@ impl Reading {
         let mut row = Vec::new();
         for _ in 0..element.count {
             values.row(element, &mut row, |_, _| Ok(()))?;
-            let number = |property: Option<usize>| {
-                let value = property.map_or(0.0, |property| row[property]);
-                if (value as f32).is_finite() {
-                    Ok(value)
-                } else {
-                    Err(ModelFileErrorKind::NotFinite(value.to_string()))
-                }
-            };
-            let [x, y, z] = place;
-            push(&mut lists.positions, Wide::new([number(x)?, number(y)?, number(z)?]))?;
+            let position = place.map(|property| property.map_or(0.0, |property| row[property]));
+            if let Some(value) = position.iter().find(|value| (**value as f32).is_infinite()) {
+                return Err(ModelFileErrorKind::NotFinite(value.to_string()));
+            }
+            if position.iter().any(|value| value.is_nan()) {
+                // Fewer than 2³², see `push`.
+                self.missing.insert(lists.positions.len() as u32, values.place());
+            }
+            push(&mut lists.positions, Wide::new(position))?;
             if let [Some(x), Some(y), Some(z)] = normal {
                 // A scan has NaN where no surface was found.
                 let normal = Vec3::from_array([x, y, z].map(|axis| row[axis] as f32));
@@ -125,8 +128,8 @@ impl Reading {
                 self.of_vertices.push(element.color(colors, &row));
             }
             if self.has_texcoords {
-                let [u, v] = pair;
-                lists.texcoords.push(Vec2::new(number(u)? as f32, number(v)? as f32));
+                let [u, v] = pair.map(|property| property.map_or(0.0, |property| finite_or_zero(row[property])));
+                lists.texcoords.push(Vec2::new(u, v));
             }
         }
         Ok(())
@@ -170,8 +173,7 @@ impl Reading {
                 if property == indices {
                     corners.push(self.corner(self.vertex(value)?, has_normals));
                 } else if Some(property) == pairs {
-                    let finite = (value as f32).is_finite();
-                    texcoords.push(if finite { value as f32 } else { 0.0 });
+                    texcoords.push(finite_or_zero(value));
                 }
                 Ok(())
             })?;
@@ -239,6 +241,17 @@ impl Reading {
         Ok(())
     }
 
+    /// Checks that no face has a vertex without a position.
+    fn check(&self, lists: &Lists) -> Result<(), (Place, ModelFileErrorKind)> {
+        if self.missing.is_empty() {
+            return Ok(());
+        }
+        match lists.corners.iter().find_map(|corner| self.missing.get(&corner.position)) {
+            Some(&place) => Err((place, ModelFileErrorKind::NotFinite(f64::NAN.to_string()))),
+            None => Ok(()),
+        }
+    }
+
     /// Adds the texture, or the colours.
     fn finish(self, header: &Header, path: &Path, draft: &mut Draft) {
         if self.textures > 0 && (self.has_texcoords || self.has_pairs) {
@@ -267,10 +280,10 @@ impl Reading {
 
     /// Adds a surface for each texture, and one without a texture for faces whose `texnumber` names none.
     fn add_textures(&self, header: &Header, path: &Path, draft: &mut Draft) {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        let with_texture = |(_, name): &(u64, String)| {
-            let file = folder.join(name).to_string_lossy().into_owned();
-            Surface { name: name.clone(), texture: Some(file), ..Surface::default() }
+        let with_texture = |(_, name): &(u64, String)| Surface {
+            name: name.clone(),
+            texture: Some(sibling_path(path, name)),
+            ..Surface::default()
         };
         if self.has_numbers {
             draft.surfaces.extend(header.textures.iter().map(with_texture));
@@ -285,6 +298,12 @@ impl Reading {
                 .push(|| format!("{shown}:{line}: faces have no texnumber; drawn with the first of {count} textures"));
         }
     }
+}
+
+/// A texture coordinate.
+fn finite_or_zero(value: f64) -> f32 {
+    let narrow = value as f32;
+    if narrow.is_finite() { narrow } else { 0.0 }
 }
 
 /// Returns whether each vertex has a normal. If the vertices follow the faces, the faces have none.
