@@ -57,6 +57,9 @@ pub(crate) struct Figures {
     pub(crate) json: Value,
 }
 
+/// The memory for the frames of one batch, unless they are fewer than threads.
+const BATCH_BYTES: u64 = 1 << 28;
+
 /// A film: its file, and how it is shown.
 pub(crate) struct Film {
     kind: Kind,
@@ -200,6 +203,20 @@ impl Film {
         if nobody_reads { Ok(()) } else { result }
     }
 
+    /// The number of bytes that a frame takes at most, drawn and encoded: a stream has three bytes per enlarged pixel.
+    fn most_bytes(&self) -> u64 {
+        let (width, height) = self.size;
+        let (wide, high) = self.scale.size(width as usize, height as usize);
+        u64::from(width) * u64::from(height) + 3 * wide as u64 * high as u64
+    }
+
+    /// The number of frames drawn at a time: several for each thread (of which there are at most 1,024), as some frames
+    /// are slower than others, but not more than fit in [`BATCH_BYTES`].
+    fn batch(&self, threads: u32) -> u32 {
+        // Below 2³².
+        (16 * threads).min(256).min((BATCH_BYTES / self.most_bytes()) as u32).max(threads)
+    }
+
     /// Draws the frames, has `make` encode each from itself, the frame before it and the first frame's colours, and
     /// passes the results to `add` in order. While one batch is encoded and added, the next is drawn; no other frames
     /// are in memory.
@@ -212,9 +229,7 @@ impl Film {
     ) -> Result<(), Failure> {
         let draw_all =
             |numbers: Range<u32>| -> Result<Vec<Frame>, Failure> { numbers.into_par_iter().map(&draw).collect() };
-        // Several for each thread (of which there are at most 1,024), as some frames are slower than others.
-        let threads = rayon::current_num_threads() as u32;
-        let batch = (16 * threads).min(256).max(threads);
+        let batch = self.batch(rayon::current_num_threads() as u32);
         let batch_from = |first: u32| first.min(self.frames)..(first + batch).min(self.frames);
         let mut drawn = draw_all(batch_from(0))?;
         let colors = drawn.first().map(|first| first.palette.clone()).unwrap_or_default();
@@ -266,4 +281,21 @@ impl Film {
 /// An error if the program has been told to end. Nobody sees it, because [`output::long_file`] does not return then.
 fn go_on() -> Result<(), Failure> {
     if output::is_interrupted() { Err(Failure::work("interrupted")) } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_frames_are_drawn_few_at_a_time() {
+        let film = |size, scale| Film::new(Kind::Stream, Path::new("-"), None, FrameRate::default(), (size, scale));
+        for (size, scale, batches) in [
+            (None, None, [16, 256, 1_024]),
+            (Some((4_096, 4_096)), None, [4, 16, 1_024]),
+            (None, Some(Scale::To { width: 16_384, height: 16_384 }), [1, 16, 1_024]),
+        ] {
+            assert_eq!([1, 16, 1_024].map(|threads| film(size, scale).batch(threads)), batches, "{size:?}");
+        }
+    }
 }

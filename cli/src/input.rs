@@ -112,11 +112,16 @@ struct Stream {
     is_scene: bool,
 }
 
+/// Returns whether an INPUT is standard input.
+pub(crate) fn is_standard(words: &OsStr) -> bool {
+    words == "-" || words == "/dev/stdin"
+}
+
 /// The stream that an INPUT names, if it names one.
 fn stream(words: &OsStr) -> Result<Option<Stream>, Failure> {
     let path = Path::new(words);
     let failed = |error: io::Error| Failure::work(format!("{}: {error}", path.display()));
-    let (bytes, name): (Box<dyn BufRead>, _) = if words == "-" || words == "/dev/stdin" {
+    let (bytes, name): (Box<dyn BufRead>, _) = if is_standard(words) {
         (Box::new(standard_input().map_err(failed)?), PathBuf::from("standard input"))
     } else if output::has_extension(path, "gz") {
         (Box::new(BufReader::new(File::open(path).map_err(failed)?)), path.to_owned())
@@ -176,7 +181,7 @@ fn standard_input() -> io::Result<&'static [u8]> {
 
 /// Name of an INPUT, whether it can be loaded or not.
 pub(crate) fn name_of(words: &OsStr) -> String {
-    if words == "-" || words == "/dev/stdin" {
+    if is_standard(words) {
         return "stdin".into();
     }
     let words = unpacked_name(Path::new(words));
@@ -248,8 +253,12 @@ pub(crate) fn model(words: &OsStr, options: &Options) -> Result<Model, Failure> 
 
 /// Loads INPUT as a model; otherwise says which files and names exist.
 fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> String) -> Result<Model, Failure> {
-    if let Some(stream) = stream(words)?.filter(|stream| !stream.is_scene) {
-        return model_of(stream, options);
+    match stream(words)? {
+        Some(stream) if stream.is_scene => {
+            return Err(Failure::words(format!("{}: a scene, where a model is needed", stream.path.display())));
+        }
+        Some(stream) => return model_of(stream, options),
+        None => {}
     }
     let path = Path::new(words);
     if let Some(mut mesh) = words.to_str().and_then(shapes::by_name) {
@@ -265,6 +274,9 @@ fn model_or(words: &OsStr, options: &Options, kinds: &str, known: &dyn Fn() -> S
         let shown = path.display();
         Err(match path.metadata() {
             Ok(metadata) if metadata.is_dir() => Failure::work(format!("{shown}: is a directory, not a model")),
+            Ok(metadata) if !metadata.is_file() => {
+                Failure::words(format!("{shown}: not a file; a model or scene in a pipe is read as -"))
+            }
             Ok(_) => Failure::words(format!("{shown}: unknown kind of file: {kinds}")),
             Err(error) if error.kind() == io::ErrorKind::NotFound => Failure::words(format!("{shown}: {}", known())),
             Err(error) => Failure::work(format!("{shown}: {error}")),

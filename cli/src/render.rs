@@ -24,7 +24,7 @@ use crate::failure::{Failure, on_one_line};
 use crate::film::{self, Film, Kind};
 use crate::host::clock;
 use crate::names::{Names, number_in};
-use crate::options::{Drawing, Moment, ShadingOptions, finite, number, one_of};
+use crate::options::{Drawing, Moment, ShadingOptions, number, one_of};
 use crate::renderer_pool::RendererPool;
 use crate::turntable::{Pose, Turntable};
 use crate::{input, output, read_files, stats};
@@ -73,7 +73,7 @@ pub(crate) struct Options {
     /// moves by itself goes through one loop in 360 degrees; the camera circles one that does not.
     ///
     /// [default: 0; for an animation 360]
-    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
     turn: Option<f64>,
     #[command(flatten)]
     moment: Moment,
@@ -134,8 +134,12 @@ fn size(words: &str) -> Result<(u32, u32), String> {
     size.ok_or_else(|| format!("not a size such as 640x400, with sides from 1 to {}", Frame::MAX_SIDE))
 }
 
+fn degrees(words: &str) -> Result<f64, String> {
+    number(words, " from -1000000000 to 1000000000", |degrees: &f64| degrees.abs() <= 1e9)
+}
+
 fn rate(words: &str) -> Result<f64, String> {
-    number(words, " above 0 and up to 1000000", |rate| *rate > 0.0 && *rate <= 1e6)
+    number(words, " from 0.001 to 1000000", |rate| (1e-3..=1e6).contains(rate))
 }
 
 pub(crate) fn run(options: &Options) -> Result<(), Failure> {

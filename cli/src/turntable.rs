@@ -235,7 +235,7 @@ impl Turntable {
                     self.scene.camera = Camera::framing_still(&self.scene.objects()[0]);
                 }
             }
-            Shown::Scene if is_turned => self.scene.camera = gone_round(self.scene.camera, turn, tilt),
+            Shown::Scene if is_turned => self.scene.camera = circled(self.scene.camera, turn, tilt),
             Shown::Scene => {}
         }
         let zoom = self.zoom * zoom;
@@ -360,21 +360,21 @@ impl Turntable {
         if self.playbacks.is_empty() && !is_circled {
             return auto_palette::of_scene(&scene);
         }
-        let round = scene.duration;
+        let duration = scene.duration;
         let is_model = matches!(self.shown, Shown::Model);
         if is_model {
-            // In a second round the scene also turns, because the user may turn it.
+            // In a second loop the scene also turns, because the user may turn it.
             scene.duration *= 2.0;
         }
         let periods = self.playbacks.iter().map(|playback| playback.clip().duration());
-        let periods: Vec<f64> = periods.chain(is_circled.then_some(round)).collect();
+        let periods: Vec<f64> = periods.chain(is_circled.then_some(duration)).collect();
         auto_palette::of_moving_scene(&scene, &periods, |scene, seconds| {
             if is_circled {
-                scene.camera = gone_round(camera, TAU * seconds / round, 0.0);
+                scene.camera = circled(camera, TAU * seconds / duration, 0.0);
             }
             self.playbacks.iter().for_each(|playback| playback.show_in(scene, seconds));
-            if is_model && seconds > round {
-                let turn = Angle::from_radians(TAU * (seconds / round - 1.0));
+            if is_model && seconds > duration {
+                let turn = Angle::from_radians(TAU * (seconds / duration - 1.0));
                 scene.objects_mut().iter_mut().for_each(|object| object.angles[1] += turn);
             }
         })
@@ -430,7 +430,7 @@ fn zoomed(mut camera: Camera, zoom: f64) -> Camera {
 
 /// A camera that has moved around its target: the scene seems to have turned by `turn` about the camera's upward axis,
 /// and its upper end to have come nearer by `tilt`.
-fn gone_round(mut camera: Camera, turn: f64, tilt: f64) -> Camera {
+fn circled(mut camera: Camera, turn: f64, tilt: f64) -> Camera {
     let up = camera.up.normalize_or(Vec3::Y);
     let out = camera.eye - camera.target;
     // If it looks along its upward axis, any axis perpendicular to that will do.
@@ -458,18 +458,18 @@ mod tests {
     }
 
     #[test]
-    fn a_camera_goes_round_so_that_its_target_seems_to_turn() {
+    fn a_camera_circles_so_that_its_target_seems_to_turn() {
         let camera = Camera { target: Vec3::new(1.0, 2.0, 3.0), ..Camera::framing(Vec3::ZERO, 1.0) };
         let camera = Camera { eye: camera.target + Vec3::Z * 4.0, ..camera };
         // A quarter turn counter-clockwise seen from above brings what was at the left to the front.
-        let left = gone_round(camera, TAU / 4.0, 0.0);
+        let left = circled(camera, TAU / 4.0, 0.0);
         assert!(near(left.eye, camera.target - Vec3::X * 4.0), "{}", left.eye);
         assert!(near(left.up, Vec3::Y));
         // A quarter turn of the upper end towards the camera shows it from above.
-        let above = gone_round(camera, 0.0, TAU / 4.0);
+        let above = circled(camera, 0.0, TAU / 4.0);
         assert!(near(above.eye, camera.target + Vec3::Y * 4.0), "{}", above.eye);
         assert!(near(above.up, Vec3::NEG_Z), "{}", above.up);
-        assert!(near(gone_round(camera, TAU, TAU).eye, camera.eye));
+        assert!(near(circled(camera, TAU, TAU).eye, camera.eye));
     }
 
     /// The torus scene looks the same as the torus model.
@@ -495,7 +495,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_that_moves_goes_on_and_another_is_gone_round() {
+    fn a_scene_that_moves_goes_on_and_another_is_circled() {
         let torus = "torus".parse::<shipped::Shipped>().expect("a scene").load().expect("a scene that loads").scene;
         assert_eq!(Turntable::of_scene(torus.clone()).turned(1.0, 90.0), (2.0, Pose::FIRST));
         let mut still = torus;

@@ -145,11 +145,14 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     let (loops, by_kernel) = rayon::join(check_loops, draw_all);
     let failed = loops.iter().filter(|outcome| outcome.wrong.is_some()).count()
         + by_kernel.iter().map(|drawn| drawn.wrong.len()).sum::<usize>();
-    let picture = picture(options, &chosen, &by_kernel)?;
+    let picture = picture(options, &chosen, &by_kernel);
+    // What was found is shown even if its picture cannot be written.
+    let path = picture.as_ref().ok().and_then(Option::as_deref);
     match options.json {
-        true => output::print(&as_json(options, &loops, &by_kernel, picture.as_deref())),
-        false => output::say(&as_text(options, &loops, &by_kernel, picture.as_deref())),
+        true => output::print(&as_json(options, &loops, &by_kernel, path)),
+        false => output::say(&as_text(options, &loops, &by_kernel, path)),
     }?;
+    picture?;
     verdict(failed)
 }
 

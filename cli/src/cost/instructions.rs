@@ -5,6 +5,7 @@
 //! counts before each call of [`shading_is_done`].
 
 use std::collections::BTreeMap;
+use std::ffi::OsString;
 use std::hint::black_box;
 use std::io::ErrorKind;
 use std::process::Command;
@@ -67,8 +68,7 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<(String, BTre
         .args([format!("--toggle-collect={COUNTED}"), format!("--dump-before={DONE}")])
         .arg(format!("--callgrind-out-file={}", directory.path().join("counts").display()))
         .arg(program)
-        .args(env::args_os().skip(1))
-        .arg("--counted")
+        .args(own_arguments(env::args_os().skip(1)))
         .output();
     let out = out.map_err(|error| match error.kind() {
         ErrorKind::NotFound => Failure::work("--instructions needs valgrind, which was not found"),
@@ -91,6 +91,14 @@ pub(super) fn count(shadings: &[Shading], frames: usize) -> Result<(String, BTre
     Ok((String::from_utf8_lossy(&out.stdout).trim().to_string(), of))
 }
 
+/// The arguments of the program that is counted: these and `--counted`, which must precede a `--`.
+fn own_arguments(given: impl Iterator<Item = OsString>) -> Vec<OsString> {
+    let mut all: Vec<OsString> = given.collect();
+    let end = all.iter().position(|word| word == "--").unwrap_or(all.len());
+    all.insert(end, "--counted".into());
+    all
+}
+
 /// The total instructions in a callgrind file, if it has any.
 fn sum(text: &str) -> Option<u64> {
     let of = |key: &str| text.lines().find_map(|line| line.strip_prefix(key)?.trim().parse().ok());
@@ -100,6 +108,13 @@ fn sum(text: &str) -> Option<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_file_may_follow_two_dashes() {
+        let own = |words: &[&str]| own_arguments(words.iter().map(OsString::from));
+        assert_eq!(own(&["cost", "a.obj"]), ["cost", "a.obj", "--counted"]);
+        assert_eq!(own(&["cost", "--", "--a.obj"]), ["cost", "--counted", "--", "--a.obj"]);
+    }
 
     #[test]
     fn the_sum_is_read_where_callgrind_writes_it() {

@@ -99,6 +99,9 @@ pub(crate) fn run(options: &Options) -> Result<(), Failure> {
     if let Some(shading) = options.shadings.iter().find(|shading| is_integer && shading.in_integers() != **shading) {
         return Err(Failure::words(format!("--shadings {shading}: not with --arithmetic fixed, which lacks it")));
     }
+    if *instructions && input::is_standard(input) {
+        return Err(Failure::words("-: --instructions reads the input a second time, so it must be a file"));
+    }
     let input = drawing.input(input)?;
     let name = input.name().to_string();
     let mut stage = drawing.stage(input)?;

@@ -27,7 +27,7 @@ pub(super) struct Looks {
     palettes: Choice<(String, Colors)>,
     /// True if a key chose one.
     chose_palette: bool,
-    /// `None` leaves it to the plan.
+    /// `None` leaves it to the scene, or else to the plan.
     mappings: Choice<Option<Mapping>>,
     /// The effects that keys switched, and to what.
     switches: Vec<(Switch, &'static str)>,
@@ -44,8 +44,12 @@ impl Looks {
         }
     }
 
-    fn mapping(&self) -> &'static str {
-        self.mappings.chosen().map_or("by plan", |mapping| mapping.name())
+    fn mapping(&self, scene: &Scene) -> String {
+        match (self.mappings.chosen(), scene.settings.mapping) {
+            (Some(mapping), _) => mapping.to_string(),
+            (None, Some(mapping)) => format!("of the scene, {mapping}"),
+            (None, None) => String::from("by plan"),
+        }
     }
 
     /// Turns effects off or on until they are in the states that keys have set.
@@ -80,7 +84,7 @@ impl Panel for Looks {
         if input.pressed(Key::M) {
             self.mappings.go_round();
             show.set_renderers(|renderer| renderer.settings.mapping = *self.mappings.chosen());
-            show.say(format!("mapping {}", self.mapping()));
+            show.say(format!("mapping {}", self.mapping(&show.stage.scene)));
         }
         for (key, switch) in Switch::KEYS {
             if input.pressed(key) {
@@ -128,7 +132,7 @@ impl Panel for Looks {
         }
         rows.push(Row::new("kernel", self.kernels.chosen().to_string()));
         rows.push(Row::new("palette", &self.palettes.chosen().0));
-        rows.push(Row::new("mapping", self.mapping()));
+        rows.push(Row::new("mapping", self.mapping(&show.stage.scene)));
         let on = effects_on(&left.renderer);
         rows.push(Row::new("effects", format!("{} of {} on:", on.len(), Effect::COUNT)));
         rows.push(Row::new("", on.join(", ")));

@@ -110,6 +110,9 @@ fn wrong_words_end_with_2() {
         ("render torus -o x.png --scale 3", "a scale is 1, 2, 5x6"),
         ("render torus -o x.png --scale 16385x1", "a scale is 1, 2, 5x6"),
         ("render torus -o x.png --turn NaN", "--turn"),
+        ("render torus -o x%d.png --frames 4 --turn 1e308", "not a number from -1000000000 to 1000000000"),
+        ("render torus -o x%d.png --frames 4 --fps 1e-320", "not a number from 0.001 to 1000000"),
+        ("cost - --instructions", "-: --instructions reads the input a second time, so it must be a file"),
         ("render torus -o x.png --time inf", "--time"),
         ("render torus -o x.png --time soon", "--time"),
         ("render torus -o x.png --zoom 0", "not a number from 0.001 to 1000"),
@@ -745,6 +748,9 @@ fn input_comes_by_a_pipe_or_packed() {
     folder.put("empty.obj.gz", pack(b"v 0 0 0\n"));
     folder.fails("render empty.obj.gz -o x.png", 2, "empty.obj.gz: no faces");
     folder.fails("render none.obj.gz -o x.png", 1, "none.obj.gz: No such file");
+    folder.fails("palette --from s.toml.gz", 2, "s.toml.gz: a scene, where a model is needed");
+    #[cfg(unix)]
+    folder.fails("render /dev/null -o x.png", 2, "/dev/null: not a file; a model or scene in a pipe is read as -");
 }
 
 /// Input from a pipe is kept until the program ends: the window shows it again after another input, and when a file that it
@@ -758,7 +764,7 @@ fn standard_input_is_read_once_and_shown_as_often_as_asked_for() {
 }
 
 /// A model, and a scene that contains it, play an animation of one second: `--time` picks a moment, and an exported
-/// animation is one round.
+/// animation is one loop.
 #[test]
 fn an_animation_is_played() {
     let folder = Folder::new();

@@ -59,6 +59,11 @@ fn one_frame_is_drawn() {
     assert!(text.contains("frames: 1 with each kernel") && text.contains("picture: bands.PNG\n"), "{text}");
     assert_eq!(folder.png("bands.PNG").size, (320, 200));
     assert_eq!(folder.printed("verify --list").lines().count(), frames::all().len());
+    // What was found is printed even if the picture cannot be written.
+    let unwritten = folder.run("verify --frame canvas/bands/plain -o none/x.png");
+    assert_eq!(unwritten.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&unwritten.stdout).contains("frames: 1 with each kernel"));
+    assert!(String::from_utf8_lossy(&unwritten.stderr).contains("none/x.png: the directory none does not exist"));
     for (words, says) in [
         ("verify --frame canvas/bands/plian", "did you mean canvas/bands/plain?"),
         ("verify --frame nothing-like-it", "--list shows them"),
