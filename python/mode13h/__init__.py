@@ -179,7 +179,8 @@ def save_png(path: str | os.PathLike[str], frame: ArrayLike, palette: ArrayLike)
 
     Raises:
         ValueError: for a wrong shape or type, or a number out of range.
-        OSError: if the file cannot be written. What was there before is still there.
+        OSError: if the file cannot be written; FileNotFoundError, NotADirectoryError, IsADirectoryError or
+            PermissionError if that is why. What was there before is still there.
     """
     pixels = _bytes("frame", frame, ("height", "width"))
     if pixels.size == 0:

@@ -2,7 +2,7 @@
 //! the model into the unit cube; this one checks values.
 
 use mode13h::Angle;
-use mode13h::export::{Picture, PixelShape, Png};
+use mode13h::export::{ExportErrorKind, Picture, PixelShape, Png};
 use mode13h::glam::{Quat, Vec3};
 use mode13h::light::Light;
 use mode13h::mesh::Mesh;
@@ -12,7 +12,9 @@ use mode13h::scene::framing::{Swept, Turning, Viewpoint};
 use mode13h::scene::{Camera, Object, Scene};
 use mode13h::settings::{Accuracy, Shading};
 use mode13h::vga::Vga;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{
+    PyFileNotFoundError, PyIsADirectoryError, PyNotADirectoryError, PyOSError, PyPermissionError, PyValueError,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
@@ -188,14 +190,24 @@ fn draw<'py>(
 
 /// Writes an indexed PNG.
 #[pyfunction]
-fn save(path: std::path::PathBuf, pixels: &[u8], width: usize, palette: &[u8]) -> PyResult<()> {
+fn save(py: Python<'_>, path: std::path::PathBuf, pixels: &[u8], width: usize, palette: &[u8]) -> PyResult<()> {
     let palette = palette_of(palette)?;
     let mut picture = Picture::of(pixels, width, &palette);
     if (picture.width, picture.height) == (Vga::WIDTH, Vga::HEIGHT) {
         picture.shape = PixelShape::MODE_13H;
     }
     picture.check().map_err(fault)?;
-    Png::default().save(&picture, path).map_err(|error| PyOSError::new_err(error.to_string()))
+    // Other threads of Python run meanwhile.
+    py.detach(|| Png::default().save(&picture, path)).map_err(|error| {
+        let what = error.to_string();
+        match error.kind {
+            ExportErrorKind::MissingDirectory => PyFileNotFoundError::new_err(what),
+            ExportErrorKind::NotADirectory => PyNotADirectoryError::new_err(what),
+            ExportErrorKind::IsDirectory => PyIsADirectoryError::new_err(what),
+            ExportErrorKind::NotPermitted => PyPermissionError::new_err(what),
+            _ => PyOSError::new_err(what),
+        }
+    })
 }
 
 #[pymodule]

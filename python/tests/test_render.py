@@ -238,8 +238,12 @@ class Errors(unittest.TestCase):
             with self.assertRaisesRegex(ValueError, "20000"):
                 mode13h.save_png(path, np.zeros((1, 20000), int), palette)
             self.assertEqual(path.read_text(), "kept")
-            with self.assertRaisesRegex(OSError, "^[^\n]*missing[^\n]*$"):
+            with self.assertRaisesRegex(FileNotFoundError, "^[^\n]*missing[^\n]*$"):
                 mode13h.save_png(Path(folder, "missing", "a.png"), frame, palette)
+            with self.assertRaisesRegex(NotADirectoryError, "^[^\n]*not a directory$"):
+                mode13h.save_png(path / "b.png", frame, palette)
+            with self.assertRaisesRegex(IsADirectoryError, "^[^\n]*is a directory$"):
+                mode13h.save_png(folder, frame, palette)
             mode13h.save_png(str(path), frame, palette)
             self.assertEqual(path.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
             self.assertEqual(os.listdir(folder), ["a.png"])
