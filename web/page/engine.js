@@ -286,7 +286,7 @@ export class Scene {
   }
 
   /**
-   * Adds a frame to an animation of one round. After the last one, returns the GIF file.
+   * Adds a frame to an animation of one loop. After the last one, returns the GIF file.
    * @param {number} number
    * @param {number} frames
    */

@@ -353,15 +353,15 @@ export class Page {
 
   /**
    * Opens the link that waits for files, if any, now that these are there. Returns whether it is open.
-   * @param {string[]} names
+   * @param {(toml: string) => boolean} isNamed  whether a scene's text names one of the new files
    */
-  retry(names) {
+  retry(isNamed) {
     const waiting = this.#waiting;
     if (!waiting) return false;
     try {
       this.#openLinked();
     } catch (error) {
-      if (names.some((name) => waiting.toml.includes(name))) throw error;
+      if (isNamed(waiting.toml)) throw error;
     }
     return !this.#waiting;
   }

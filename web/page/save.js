@@ -1,5 +1,5 @@
 // @ts-check
-// Downloads: the picture, an animation of one round, the scene's file.
+// Downloads: the picture, an animation of one loop, the scene's file.
 
 import { group } from "./common.js";
 import { element, make, setText } from "./elements.js";

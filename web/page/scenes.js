@@ -160,7 +160,7 @@ export class Scenes {
     this.page.setFiles(this.#files);
     element("dropped").replaceChildren(...[...this.#files].map(([name, bytes]) => make("li", { className: "mono" }, `${name}, ${group(bytes.length)} bytes`)));
     // A link that waited for these files brings its scene, pose and settings.
-    if (this.page.retry(files.map((file) => file.name))) return;
+    if (this.page.retry((toml) => files.some((file) => names(toml, file.name)))) return;
     /** @param {string} extension */
     const find = (extension) => files.find((file) => file.name.toLowerCase().endsWith(extension));
     const [scene, model] = [find(".toml"), find(".obj")];

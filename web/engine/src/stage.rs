@@ -224,7 +224,7 @@ impl Stage {
         Png::default().encode(&Picture::mode_13h(self.vga.pixels(), &palette)).map_err(|error| error.to_string())
     }
 
-    /// Adds a frame of one round, from the pose shown last, to the animation.
+    /// Adds a frame of one loop, from the pose shown last, to the animation.
     pub(crate) fn film(&mut self, number: u32, frames: u32) -> Result<Vec<u8>, String> {
         let new = || GifWriter::new(Vec::new(), Scale::To { width: 640, height: 480 }, FrameRate::default());
         if number == 0 {
