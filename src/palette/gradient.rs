@@ -44,9 +44,9 @@ pub const fn fill(colors: &mut [Rgb; 256], ramp: Ramp, keys: &[Stop]) {
     }
 }
 
-/// The colour of entry `i` of `entries`, at most 1,025 because of the products in `between`.
+/// The colour of entry `i` of `entries`, as in [`fill`]; `None` without keys or entries.
 pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
-    if keys.is_empty() {
+    if keys.is_empty() || entries == 0 {
         return None;
     }
     // Positions are stored as numerators over `entries − 1`.
@@ -76,9 +76,33 @@ pub const fn color_at(i: u16, entries: u16, keys: &[Stop]) -> Option<Rgb> {
     ))
 }
 
-/// `a + (b − a)·along/length`, rounded to the nearest, halves upward. `length` is at most 255·1,024, so all products
-/// stay below 2²⁸; the result is between `a` and `b`.
+/// `a + (b − a)·along/length`, rounded to the nearest, halves upward; between `a` and `b`. `length` is below 2²⁴.
 const fn between(a: u8, b: u8, along: i32, length: i32) -> u8 {
-    let twice = 2 * (a as i32 * length + (b as i32 - a as i32) * along) + length;
+    let (a, b, along, length) = (a as i64, b as i64, along as i64, length as i64);
+    let twice = 2 * (a * length + (b - a) * along) + length;
     (twice / (2 * length)) as u8
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn any_number_of_entries_has_the_nearest_colours() {
+        let keys = [Stop::new(10, 0x00FF80), Stop::new(200, 0xFF0081)];
+        for entries in [1, 2, 255, 256, 1_025, 16_501, 60_000, u16::MAX] {
+            for i in [0, 1, entries / 7, entries / 3, entries / 2, entries - 1].into_iter().filter(|i| *i < entries) {
+                let at = if entries == 1 { 255.0 } else { f64::from(i) * 255.0 / f64::from(entries - 1) };
+                let part = ((at - 10.0) / 190.0).clamp(0.0, 1.0);
+                let color = color_at(i, entries, &keys).expect("keys");
+                for (found, [from, to]) in [(color.r, [0.0, 255.0]), (color.g, [255.0, 0.0]), (color.b, [128.0, 129.0])]
+                {
+                    // A half may go either way in f64.
+                    let exact: f64 = from + (to - from) * part;
+                    assert!((f64::from(found) - exact).abs() <= 0.5 + 1e-9, "{i} of {entries}: {color:?}");
+                }
+            }
+        }
+        assert_eq!(color_at(0, 0, &keys), None);
+    }
 }
