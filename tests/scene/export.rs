@@ -334,7 +334,7 @@ fn f4_each_reason_has_its_own_error_with_the_path() {
     tried.add(3);
 }
 
-/// What replaces a private file is private from its first byte.
+/// A file that replaces a private one is private from its first byte.
 #[cfg(unix)]
 #[test]
 fn a_private_file_is_replaced_by_a_private_one() {

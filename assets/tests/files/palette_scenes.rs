@@ -334,7 +334,7 @@ fn highlights_are_shown_in_their_colours() {
     }
 }
 
-/// What is never visible during a loop is not measured; what becomes visible later in it is.
+/// A surface that is never visible during a loop is not measured; one that becomes visible later in it is.
 #[test]
 fn a_loop_is_seen_and_not_its_beginning() {
     let mut random = Random::named("round");
