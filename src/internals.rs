@@ -14,6 +14,9 @@ macro_rules! modules {
     };
 }
 
+/// Whether the target has IEEE double precision in hardware.
+pub const HAS_F64: bool = crate::fixed::HAS_F64;
+
 /// Eight values at a time.
 pub mod lanes {
     pub use crate::lanes::*;

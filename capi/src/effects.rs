@@ -3,6 +3,7 @@
 use core::ffi::c_void;
 
 use mode13h::fixed::U8F8;
+use mode13h::internals::HAS_F64;
 use mode13h::internals::raster::effects::{Attributes, EffectBatch, PixelPipeline, ShadeSource, TextureStage};
 use mode13h::internals::span::texture::{Texels, fill_affine};
 use mode13h::raster::{Frame, Interpolation, Raster};
@@ -13,7 +14,7 @@ use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
 /// The memory that the stages allocate when they first draw; later they allocate nothing.
-const HEAP: usize = 0x1_D000;
+const HEAP: usize = if HAS_F64 { 0x2_4000 } else { 0x1_D000 };
 
 /// The size of a context in bytes, if its memory is aligned to 16.
 pub(crate) const BYTES: usize = size_of::<Context>() + HEAP;

@@ -17,18 +17,16 @@ use super::reference::shade::{RESEED, ShadePlane};
 use super::vintage::VintageTriangle;
 use crate::fixed::IS_SMALL;
 #[cfg(feature = "alloc")]
-use crate::fixed::nearest_whole;
-#[cfg(feature = "alloc")]
-use crate::lanes::{LANES, NUMBERS, blocks, each};
-#[cfg(feature = "alloc")]
-use crate::simd::Lanes8;
+use crate::lanes::{LANES, each};
 #[cfg(feature = "alloc")]
 use crate::span::dither::{ThresholdRow, fill_dithered};
 use crate::span::fixed16::fill_16_16;
 #[cfg(feature = "alloc")]
+use crate::span::fixed16::shades_16_16;
+#[cfg(feature = "alloc")]
 use crate::span::float;
 #[cfg(feature = "alloc")]
-use crate::span::hyperbolic::{fill_estimated_blocks, floor_quotient};
+use crate::span::hyperbolic::{estimated_shades, floor_quotient};
 use crate::span::{Kernel, depth};
 
 /// The shades of one triangle, or another value of its corners, ready to be filled row by row.
@@ -154,76 +152,23 @@ impl RowShader {
         }
     }
 
-    /// [`piece`](Self::piece) of this length without dither, at the beginning of `bytes`, in whole blocks of eight, for
-    /// which there is room. Bytes after the piece are arbitrary.
-    #[inline(always)]
-    pub(super) fn blocks<S: Lanes8>(
-        &self,
-        s: S,
-        (row, x): (&Row, i32),
-        (bytes, length): (&mut [u8], usize),
-        kernel: Kernel,
-    ) {
-        match self {
-            Self::Fixed16(plane) => {
-                let step = s.splat_i32(plane.step.cast_signed());
-                let start = s.splat_i32(fixed16_start(plane, row, x).cast_signed());
-                let mut sums = s.add_i32(start, s.mul_i32(step, s.load_i32(&NUMBERS)));
-                for block in blocks(bytes, length) {
-                    *block = s.low_bytes(s.shr_i32(sums, 16));
-                    sums = s.add_i32(sums, s.shl_i32(step, 3));
-                }
-            }
-            Self::Hyperbolic(plane) => {
-                let estimates = plane.estimates(x, row.y, 128, length);
-                if !estimates.is_some_and(
-                    #[inline(always)]
-                    |[n, d]| fill_estimated_blocks(s, (&mut *bytes, length), n, d),
-                ) {
-                    plane.fill(x, row.y, &mut bytes[..length]);
-                }
-            }
-            Self::Float(plane) if !IS_SMALL => {
-                let at = plane.row(row);
-                float::fill_float_blocks((bytes, length), x - at.start, at.n, at.d, at.range);
-            }
-            _ => self.piece(row, x, &mut bytes[..length], None, kernel),
-        }
-    }
-
     /// The truncated 8.8 shades from column `x` of `row` on, for the kinds without a dithering loop.
     fn shades(&self, row: &Row, x: i32, shades: &mut [u16]) {
         // Each is 0 to 0xFF00, because the pixel is covered.
         match self {
-            Self::Fixed16(plane) => {
-                // Without the half.
-                let mut sum = fixed16_start(plane, row, x).wrapping_sub(0x8000);
-                for shade in shades {
-                    *shade = (sum >> 8) as u16;
-                    sum = sum.wrapping_add(plane.step);
-                }
-            }
+            Self::Fixed16(plane) => shades_16_16(shades, fixed16_start(plane, row, x), plane.step),
             Self::Hyperbolic(plane) => {
                 let estimates = plane.estimates(x, row.y, 0, shades.len());
-                for (i, shade) in shades.iter_mut().enumerate() {
-                    let k = i as f64;
-                    let of = |[[n, dn], [d, dd]]: [[f64; 2]; 2]| nearest_whole((n + k * dn) / (d + k * dd));
-                    // The estimate, rounded to a whole number, is less than 1 off: see `fill_estimated_blocks`.
-                    let estimate = estimates.map_or(0, of);
-                    *shade = if estimate & 0xFF == 0 {
-                        // A column is below 4,096.
-                        let (n, d) = plane.shade(x + i as i32, row.y);
-                        floor_quotient(n, d) as u16
-                    } else {
-                        (estimate >> 8) as u16
-                    };
+                if !estimates.is_some_and(|[n, d]| estimated_shades(shades, n, d)) {
+                    for (shade, x) in shades.iter_mut().zip(x..) {
+                        let (n, d) = plane.shade(x, row.y);
+                        *shade = floor_quotient(n, d) as u16;
+                    }
                 }
             }
             Self::Float(plane) if !IS_SMALL => {
                 let at = plane.row(row);
-                for (i, shade) in shades.iter_mut().enumerate() {
-                    *shade = (float::quotient(x - at.start + i as i32, at.n, at.d, at.range) * 256.0) as u16;
-                }
+                float::float_shades(shades, x - at.start, at.n, at.d, at.range);
             }
             Self::Flat(_) | Self::Linear { .. } | Self::Vintage(_) | Self::Float(_) => {}
         }

@@ -1,4 +1,5 @@
-//! Shadings of eight triangles other than a linear shade in 8.8: set-up, starts of rows, and the bytes of spans.
+//! Shadings of eight triangles other than a linear shade in 8.8: set-up, starts of rows, and the bytes of spans. Faces
+//! with effects are shaded here, too, by a [`ShadedValues`] for the shade or for each channel.
 //!
 //! | shading | a row starts with | its bytes |
 //! |---|---|---|
@@ -39,13 +40,18 @@ use super::reference::cover::SortedTriangle;
 use super::reference::float::FloatPlane;
 use super::reference::hyperbolic::HyperbolicPlane;
 use super::rows::{Batches, Lane, Parts, RowEnds, Shades8, numerator_at};
-use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ends};
-use crate::fixed::{HAS_F64, ROUND_MAGIC};
+use super::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8, ends};
+use crate::fixed::{HAS_F64, IS_SMALL, ROUND_MAGIC};
 use crate::lanes::{LANES, NUMBERS, three};
 use crate::simd::{Lanes8, compiled_for_each_level};
 use crate::span::PIECE;
+use crate::span::fixed16::fill_16_16_blocks;
 #[cfg(feature = "alloc")]
-use crate::span::float::fill_float_blocks;
+use crate::span::fixed16::shades_16_16;
+#[cfg(feature = "alloc")]
+use crate::span::float::{fill_float_blocks, float_shades};
+#[cfg(feature = "alloc")]
+use crate::span::hyperbolic::estimated_shades;
 use crate::span::hyperbolic::fill_estimated_blocks;
 use crate::span::list::{Span, SpanList};
 use crate::span::records::{RecordColumns, Records, SpanBytes};
@@ -66,7 +72,7 @@ impl Kind {
             Interpolation::Gouraud1616 => Some(Self::Fixed16),
             Interpolation::GouraudHyperbolic => Some(Self::Hyperbolic),
             #[cfg(feature = "alloc")]
-            Interpolation::GouraudFloat => Some(Self::Float),
+            Interpolation::GouraudFloat if !IS_SMALL => Some(Self::Float),
             _ => None,
         }
     }
@@ -82,24 +88,62 @@ struct Steps8 {
     words: [Ints; 4],
 }
 
-/// Memory for listed spans: the steps of their triangles, their records and their bytes. Within an error budget a torus
-/// is drawn in some seventy runs; clearing this for each would take 0.9 % of a frame's instructions.
-#[derive(Debug)]
-pub(crate) struct ShadedData {
+/// One value of the corners of triangles: its planes over the eight that are being set up, and what the spans of those
+/// in all batches are filled with.
+#[derive(Clone, Debug)]
+pub(super) struct ShadedValues {
+    /// True if values are truncated, not rounded to bytes.
+    pub(super) is_truncated: bool,
+    planes: Planes8,
     steps: [Steps8; Batches::COUNT],
-    /// 16.16: shade and step. Otherwise the triangle, among those whose steps are stored; in f32 with the index of the
-    /// first pixel, relative to the pixel where the sums are, in the upper half.
+    /// 16.16: shade and step. In f32, the index of the first pixel, relative to the pixel where the sums are. The second
+    /// number is free for the other two shadings: a plain span has its triangle there.
     numbers: RecordColumns<i32, 2>,
     /// Numerator and divisor.
     sums: RecordColumns<i64, 2>,
+}
+
+/// Planes of a value over eight triangles.
+#[derive(Clone, Debug)]
+struct Planes8 {
+    /// 16.16: 255·h, and A.
+    fraction: Floats,
+    area: Floats,
+    /// Perspective-correct: numerator and divisor, each at the box's first pixel and its change per row.
+    sums: [[Floats; 2]; 2],
+    /// In f32: the weight of each corner, by height: its value at the box's first pixel, and its changes per row and
+    /// column.
+    weights: [[Floats; 3]; 3],
+    /// Each corner's depth times its value, and its depth.
+    values: [[Floats; 2]; 3],
+}
+
+impl Default for ShadedValues {
+    fn default() -> Self {
+        let floats = [0.0; LANES];
+        let (sums, weights, values) = ([[floats; 2]; 2], [[floats; 3]; 3], [[floats; 2]; 3]);
+        let steps = Steps8 { sums: [floats; 2], words: [[0; LANES]; 4] };
+        Self {
+            is_truncated: false,
+            planes: Planes8 { fraction: floats, area: floats, sums, weights, values },
+            steps: [steps; Batches::COUNT],
+            numbers: RecordColumns::new(),
+            sums: RecordColumns::new(),
+        }
+    }
+}
+
+/// Memory for listed spans: the shades of their triangles, and their bytes. Within an error budget a torus is drawn in
+/// some seventy runs; clearing this for each would take 0.9 % of a frame's instructions.
+#[derive(Debug)]
+pub(crate) struct ShadedData {
+    shades: ShadedValues,
     bytes: SpanBytes,
 }
 
 impl Default for ShadedData {
     fn default() -> Self {
-        let steps = Steps8 { sums: [[0.0; LANES]; 2], words: [[0; LANES]; 4] };
-        let (numbers, sums, bytes) = (RecordColumns::new(), RecordColumns::new(), SpanBytes::NONE);
-        Self { steps: [steps; Batches::COUNT], numbers, sums, bytes }
+        Self { shades: ShadedValues::default(), bytes: SpanBytes::NONE }
     }
 }
 
@@ -118,8 +162,8 @@ impl ShadedFaces<'_> {
     /// Computes the perspective-correct bytes of a span, which estimates cannot decide, in exact arithmetic.
     #[cold]
     #[inline(never)]
-    fn exact_bytes(&self, span: Span, face: u32, bytes: &mut Bytes) {
-        let triangle = self.triangle(face as usize);
+    fn exact_bytes(&self, span: Span, face: usize, bytes: &mut Bytes) {
+        let triangle = self.triangle(face);
         let plane = HyperbolicPlane::of_values(&triangle, triangle.shades());
         let FrameLayout { first_row, pitch, .. } = self.layout;
         // In a frame: below 4,096.
@@ -128,59 +172,99 @@ impl ShadedFaces<'_> {
     }
 }
 
-/// Triangles, the planes of eight of them, and the steps of those whose spans are listed.
+/// Triangles, and the shades of those whose spans are listed.
 pub(super) struct Shaded8<'a> {
     kind: Kind,
     listed: ShadedFaces<'a>,
     data: &'a mut ShadedData,
-    /// 16.16: 255·h, and A.
-    fraction: Floats,
-    area: Floats,
-    /// Perspective-correct: numerator and divisor, each at the box's first pixel and its change per row.
-    planes: [[Floats; 2]; 2],
-    /// In f32: the weight of each corner, by height: its value at the box's first pixel, and its changes per row and
-    /// column.
-    weights: [[Floats; 3]; 3],
-    /// Each corner's depth times its shade, and its depth.
-    values: [[Floats; 2]; 3],
 }
 
 impl<'a> Shaded8<'a> {
     #[inline(always)]
     pub(super) fn new(kind: Kind, of: PickedTriangles<'a>, layout: FrameLayout, data: &'a mut ShadedData) -> Self {
-        let floats = [0.0; LANES];
-        Self {
-            kind,
-            listed: ShadedFaces { of, layout, batches: Batches::NONE },
-            data,
-            fraction: floats,
-            area: floats,
-            planes: [[floats; 2]; 2],
-            weights: [[floats; 3]; 3],
-            values: [[floats; 2]; 3],
+        Self { kind, listed: ShadedFaces { of, layout, batches: Batches::NONE }, data }
+    }
+
+    /// Fills the spans of a list, and writes them.
+    #[inline(always)]
+    fn draw_by<S: Lanes8>(&mut self, s: S, kind: Kind, list: &mut SpanList, target: &mut Target<'_>) {
+        let (count, mut first, mut nearer) = (list.count(), 0, 0);
+        let ShadedData { shades, bytes: all_bytes } = &mut *self.data;
+        let depths = list.depths();
+        while first < count {
+            let end = count.min(first + SpanBytes::COUNT);
+            for k in first..end {
+                let span = list.span(k);
+                let record = span.fill as usize;
+                let face = shades.numbers.of(record, 1).cast_unsigned() as usize;
+                let bytes = all_bytes.of_mut(k - first);
+                // The span's bytes, followed by arbitrary ones to fill blocks of eight.
+                if !shades.fill_blocks(s, kind, (face, record), (&mut bytes[..], span.length as usize)) {
+                    self.listed.exact_bytes(span, face, bytes);
+                }
+            }
+            let of = (
+                #[inline(always)]
+                |k| {
+                    let Span { at, length, .. } = list.span(k);
+                    Written { at, bytes: all_bytes.of(k - first), length: length as usize }
+                },
+                #[inline(always)]
+                |k| depths.of(k),
+            );
+            nearer += target.write_each(s, first..end, of, true);
+            first = end;
+        }
+        list.clear(nearer);
+    }
+}
+
+impl ShadedValues {
+    /// Sets up eight triangles of this batch, given the values of their corners and, for 16.16, their linear planes.
+    #[inline(always)]
+    pub(super) fn set_up<S: Lanes8>(
+        &mut self,
+        s: S,
+        (kind, batch): (Kind, usize),
+        basis: &Basis<S>,
+        (corners, values): (&Corners8, &[Ints; 3]),
+        linear: &ValuePlanes8,
+    ) {
+        match kind {
+            Kind::Fixed16 => self.set_up_16_16(s, batch, basis, linear),
+            Kind::Hyperbolic => self.set_up_hyperbolic(s, batch, basis, (corners, values)),
+            #[cfg(feature = "alloc")]
+            Kind::Float => self.set_up_float(s, batch, basis, (corners, values)),
         }
     }
 
     #[inline(always)]
-    fn set_up_16_16<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, setup: &TriangleSetup8) {
+    fn set_up_16_16<S: Lanes8>(&mut self, s: S, batch: usize, basis: &Basis<S>, linear: &ValuePlanes8) {
         let magic = s.splat_f64(ROUND_MAGIC);
-        let per_column = s.load_f64(&setup.shade.per_column);
+        let per_column = s.load_f64(&linear.per_column);
         let half = s.xor_sign(s.mul_add(basis.area, s.splat_f64(0.5), s.splat_f64(-0.5)), per_column);
         let fraction = s.mul(half, s.splat_f64(255.0));
-        s.store_f64(fraction, &mut self.fraction);
-        s.store_f64(basis.area, &mut self.area);
+        s.store_f64(fraction, &mut self.planes.fraction);
+        s.store_f64(basis.area, &mut self.planes.area);
         let step = sum_16_16(s, s.sub(per_column, half), (basis.area, basis.inverse), fraction, magic);
-        s.store_i32(step, &mut self.data.steps[self.listed.batches.current()].words[0]);
+        s.store_i32(step, &mut self.steps[batch].words[0]);
     }
 
     #[inline(always)]
-    fn set_up_hyperbolic<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
-        let [a, b, c] = basis.order.load(s, &corners.shade);
+    fn set_up_hyperbolic<S: Lanes8>(
+        &mut self,
+        s: S,
+        batch: usize,
+        basis: &Basis<S>,
+        (corners, values): (&Corners8, &[Ints; 3]),
+    ) {
+        let [a, b, c] = basis.order.load(s, values);
         let depths = basis.depths(s, corners);
-        // 2¹⁶ times a byte with its half, and a bit more if it is the same everywhere: see
+        // 2¹⁶ times a byte with its half, if it is rounded, and a bit more if it is the same everywhere: see
         // `HyperbolicPlane::estimates`.
         let is_flat = s.and(s.is_equal(a, b), s.is_equal(b, c));
-        let half = s.select(is_flat, s.splat_f64(128.5), s.splat_f64(128.0));
+        let half = if self.is_truncated { 0.0 } else { 128.0 };
+        let half = s.select(is_flat, s.splat_f64(half + 0.5), s.splat_f64(half));
         let numerators = three(
             [(a, depths[0]), (b, depths[1]), (c, depths[2])],
             #[inline(always)]
@@ -189,18 +273,24 @@ impl<'a> Shaded8<'a> {
         let [spread, least] = basis.conditions(s, ends(s, depths));
         let is_sure = s.is_less(spread, s.mul(least, s.splat_f64(524_288.0)));
         let (zero, one) = (s.splat_f64(0.0), s.splat_f64(1.0));
-        let steps = &mut self.data.steps[self.listed.batches.current()];
-        for (i, (values, unsure)) in [(numerators, zero), (depths, one)].into_iter().enumerate() {
-            let [at_first, per_row, per_column] = basis.plane(s, values);
-            s.store_f64(s.select(is_sure, at_first, unsure), &mut self.planes[i][0]);
-            s.store_f64(s.select(is_sure, per_row, zero), &mut self.planes[i][1]);
+        let steps = &mut self.steps[batch];
+        for (i, (sums, unsure)) in [(numerators, zero), (depths, one)].into_iter().enumerate() {
+            let [at_first, per_row, per_column] = basis.plane(s, sums);
+            s.store_f64(s.select(is_sure, at_first, unsure), &mut self.planes.sums[i][0]);
+            s.store_f64(s.select(is_sure, per_row, zero), &mut self.planes.sums[i][1]);
             s.store_f64(s.select(is_sure, per_column, zero), &mut steps.sums[i]);
         }
     }
 
     #[inline(always)]
-    fn set_up_float<S: Lanes8>(&mut self, s: S, basis: &Basis<S>, corners: &Corners8) {
-        let shades = basis.order.load(s, &corners.shade);
+    fn set_up_float<S: Lanes8>(
+        &mut self,
+        s: S,
+        batch: usize,
+        basis: &Basis<S>,
+        (corners, values): (&Corners8, &[Ints; 3]),
+    ) {
+        let shades = basis.order.load(s, values);
         let depths = basis.depths(s, corners);
         let [(change_a, weights_a), (change_b, weights_b), (change_c, weights_c)] = three(
             [0, 1, 2],
@@ -222,14 +312,14 @@ impl<'a> Shaded8<'a> {
         // Stored once: the compiler would store a swap in memory with `vmaskmovpd`, which takes 20 cycles on AMD
         // processors.
         for corner in 0..3 {
-            for (i, to) in self.weights[corner].iter_mut().enumerate() {
+            for (i, to) in self.planes.weights[corner].iter_mut().enumerate() {
                 s.store_f64(weights[corner][i], to);
             }
-            for (i, to) in self.values[corner].iter_mut().enumerate() {
+            for (i, to) in self.planes.values[corner].iter_mut().enumerate() {
                 s.store_f64(values[corner][i], to);
             }
         }
-        let steps = &mut self.data.steps[self.listed.batches.current()];
+        let steps = &mut self.steps[batch];
         let [dn, dd, least, greatest] = &mut steps.words;
         for (i, (unit, steps)) in [(1.0, dn), (256.0, dd)].into_iter().enumerate() {
             // Whole numbers below 2⁴⁸ and 2¹², exact in sums with the magic number.
@@ -256,58 +346,145 @@ impl<'a> Shaded8<'a> {
         }
     }
 
-    #[inline(always)]
-    fn draw_by<S: Lanes8, const IS_ESTIMATE: bool>(&mut self, s: S, list: &mut SpanList, target: &mut Target<'_>) {
-        let (count, mut first, mut nearer) = (list.count(), 0, 0);
-        let ShadedData { steps, numbers, sums: starts, bytes: all_bytes } = &mut *self.data;
-        let depths = list.depths();
-        while first < count {
-            let end = count.min(first + SpanBytes::COUNT);
-            for k in first..end {
-                let span = list.span(k);
-                let record = span.fill as usize;
-                let face = numbers.of(record, 0).cast_unsigned();
-                let sum = |i: usize| f64::from_bits(starts.of(record, i).cast_unsigned());
-                let [n, d] = [sum(0), sum(1)];
-                let bytes = all_bytes.of_mut(k - first);
-                // The span's bytes, followed by arbitrary ones to fill blocks of eight.
-                let row = (&mut bytes[..], span.length as usize);
-                // The lowest six bits, in f32 too.
-                let (batch, lane) = Batches::of_face(face as usize);
-                if IS_ESTIMATE {
-                    let [dn, dd] = &steps[batch].sums;
-                    if !fill_estimated_blocks(s, row, [n, dn[lane]], [d, dd[lane]]) {
-                        self.listed.exact_bytes(span, face, bytes);
-                    }
-                } else {
-                    #[cfg(feature = "alloc")]
-                    {
-                        let mut singles = [0.0; 4];
-                        for (single, bits) in singles.iter_mut().zip(&steps[batch].words) {
-                            *single = f32::from_bits(bits[lane].cast_unsigned());
-                        }
-                        let [dn, dd, least, greatest] = singles;
-                        // Rounded once: dividing by 256 changes no bit.
-                        let (n_and_step, d_and_step) = ([(n / 256.0) as f32, dn], [d as f32, dd]);
-                        // The index of the first pixel, relative to the pixel where the sums are.
-                        let first = face.cast_signed() >> 16;
-                        fill_float_blocks(row, first, n_and_step, d_and_step, [least, greatest]);
-                    }
-                }
-            }
-            let of = (
-                #[inline(always)]
-                |k| {
-                    let Span { at, length, .. } = list.span(k);
-                    Written { at, bytes: all_bytes.of(k - first), length: length as usize }
-                },
-                #[inline(always)]
-                |k| depths.of(k),
-            );
-            nearer += target.write_each(s, first..end, of, true);
-            first = end;
+    /// The exact steps in f32 of a triangle too large for 64-bit sums, given its values by height.
+    #[cfg(feature = "alloc")]
+    pub(super) fn set_up_large(&mut self, face: usize, triangle: &SortedTriangle, values: [i64; 3]) {
+        let (batch, lane) = Batches::of_face(face);
+        let steps = FloatPlane::of_values(triangle, values).steps;
+        for (to, step) in self.steps[batch].words.iter_mut().zip(steps) {
+            to[lane] = step.to_bits().cast_signed();
         }
-        list.clear(nearer);
+    }
+
+    /// Stores what the spans of rows are filled with in eight records from this one on. The spans begin at columns `at`,
+    /// not before the row's first pixel.
+    #[inline(always)]
+    pub(super) fn begin_spans<S: Lanes8>(
+        &mut self,
+        s: S,
+        lane: impl Lane<S>,
+        (kind, batch, record): (Kind, usize, usize),
+        linear: (&ValuePlanes8, &Floats),
+        (j, parts, at): (S::F64, &Parts<S>, S::F64),
+    ) {
+        let magic = s.splat_f64(ROUND_MAGIC);
+        let Self { planes, steps, numbers, sums, .. } = self;
+        let steps = &steps[batch];
+        if kind == Kind::Fixed16 {
+            let (linear, inverse) = linear;
+            let n = numerator_at(s, lane, linear, j, parts.row);
+            let quotient = (lane.load_f64(s, &planes.area), lane.load_f64(s, inverse));
+            let start = sum_16_16(s, n, quotient, lane.load_f64(s, &planes.fraction), magic);
+            let skipped = s.sub_i32(s.low_bits(at), s.low_bits(parts.row));
+            let step = lane.load_i32(s, &steps.words[0]);
+            s.store_i32(s.add_i32(start, s.mul_i32(step, skipped)), numbers.eight(record, 0));
+            s.store_i32(step, numbers.eight(record, 1));
+            return;
+        }
+        if kind == Kind::Hyperbolic {
+            let columns = s.sub(at, magic);
+            for (i, [at_first, per_row]) in planes.sums.iter().enumerate() {
+                let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
+                let sum = s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row);
+                s.store_i64(s.bits(sum), sums.eight(record, i));
+            }
+            return;
+        }
+        // A step of zero is not −0.
+        let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
+        let exact = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
+        s.store_i32(s.sub_i32(s.low_bits(at), s.low_bits(exact)), numbers.eight(record, 0));
+        let columns = s.sub(exact, magic);
+        let mut totals = [s.splat_f64(0.0); 2];
+        for (weights, values) in planes.weights.iter().zip(&planes.values) {
+            // Whole numbers: exact.
+            let weight = s.mul_add(lane.load_f64(s, &weights[1]), j, lane.load_f64(s, &weights[0]));
+            let weight = s.mul_add(lane.load_f64(s, &weights[2]), columns, weight);
+            for (i, total) in totals.iter_mut().enumerate() {
+                // Rounded twice at every level.
+                *total = s.add(*total, s.mul(weight, lane.load_f64(s, &values[i])));
+            }
+        }
+        for (i, total) in totals.into_iter().enumerate() {
+            s.store_i64(s.bits(total), sums.eight(record, i));
+        }
+    }
+
+    /// Fills the span of a face and a record, in whole blocks of eight: bytes after its length are arbitrary. Returns
+    /// false where an estimate cannot decide a byte.
+    #[inline(always)]
+    pub(super) fn fill_blocks<S: Lanes8>(
+        &self,
+        s: S,
+        kind: Kind,
+        (face, record): (usize, usize),
+        row: (&mut [u8], usize),
+    ) -> bool {
+        match kind {
+            Kind::Fixed16 => {
+                let [start, step] = self.start_16_16(record);
+                fill_16_16_blocks(s, row, start.cast_signed(), step.cast_signed());
+                true
+            }
+            Kind::Hyperbolic => {
+                let [n, d] = self.estimates(face, record);
+                fill_estimated_blocks(s, row, n, d)
+            }
+            #[cfg(feature = "alloc")]
+            Kind::Float => {
+                let (first, [n, d, range]) = self.singles(face, record);
+                fill_float_blocks(row, first, n, d, range);
+                true
+            }
+        }
+    }
+
+    /// Fills `shades` with the span of a face and a record, truncated in 8.8. Returns false where an estimate cannot
+    /// decide a shade.
+    #[cfg(feature = "alloc")]
+    pub(super) fn shades(&self, kind: Kind, (face, record): (usize, usize), shades: &mut [u16]) -> bool {
+        match kind {
+            Kind::Fixed16 => {
+                let [start, step] = self.start_16_16(record);
+                shades_16_16(shades, start, step);
+                true
+            }
+            Kind::Hyperbolic => {
+                let [n, d] = self.estimates(face, record);
+                estimated_shades(shades, n, d)
+            }
+            Kind::Float => {
+                let (first, [n, d, range]) = self.singles(face, record);
+                float_shades(shades, first, n, d, range);
+                true
+            }
+        }
+    }
+
+    /// Shade and step of a span.
+    #[inline(always)]
+    fn start_16_16(&self, record: usize) -> [u32; 2] {
+        [0, 1].map(|i| self.numbers.of(record, i).cast_unsigned())
+    }
+
+    /// Numerator and divisor of a span, each with its change per pixel.
+    #[inline(always)]
+    fn estimates(&self, face: usize, record: usize) -> [[f64; 2]; 2] {
+        let (batch, lane) = Batches::of_face(face);
+        let steps = &self.steps[batch].sums;
+        [0, 1].map(|i| [f64::from_bits(self.sums.of(record, i).cast_unsigned()), steps[i][lane]])
+    }
+
+    /// The index of a span's first pixel; numerator and divisor, each with its change per pixel, and the range of shades.
+    #[cfg(feature = "alloc")]
+    #[inline(always)]
+    fn singles(&self, face: usize, record: usize) -> (i32, [[f32; 2]; 3]) {
+        let (batch, lane) = Batches::of_face(face);
+        let [n, d] = [0, 1].map(|i| f64::from_bits(self.sums.of(record, i).cast_unsigned()));
+        let [dn, dd, least, greatest] =
+            self.steps[batch].words.each_ref().map(|of| f32::from_bits(of[lane].cast_unsigned()));
+        // Rounded once: dividing by 256 changes no bit.
+        (self.numbers.of(record, 0), [[(n / 256.0) as f32, dn], [d as f32, dd], [least, greatest]])
     }
 }
 
@@ -352,12 +529,8 @@ impl Shades8 for Shaded8<'_> {
             #[inline(always)]
             move || {
                 let basis = &setup.set_up(s, corners, of, self.kind == Kind::Fixed16);
-                match self.kind {
-                    Kind::Fixed16 => self.set_up_16_16(s, basis, setup),
-                    Kind::Hyperbolic => self.set_up_hyperbolic(s, basis, corners),
-                    #[cfg(feature = "alloc")]
-                    Kind::Float => self.set_up_float(s, basis, corners),
-                }
+                let of_batch = (self.kind, self.listed.batches.current());
+                self.data.shades.set_up(s, of_batch, basis, (corners, &corners.shade), &setup.shade);
             },
         );
     }
@@ -371,66 +544,24 @@ impl Shades8 for Shaded8<'_> {
         ends: &RowEnds<S>,
         parts: &Parts<S>,
     ) -> S::I32 {
-        let (j, magic) = (ends.j, s.splat_f64(ROUND_MAGIC));
-        let record = self.listed.batches.records.begin();
+        let Self { kind, listed: ShadedFaces { batches, .. }, data } = self;
+        let (kind, record) = (*kind, batches.records.begin());
+        let linear = (&setup.shade, &setup.inverse);
+        data.shades.begin_spans(s, lane, (kind, batches.current(), record), linear, (ends.j, parts, parts.start));
+        if kind != Kind::Fixed16 {
+            s.store_i32(batches.faces(s, lane), data.shades.numbers.eight(record, 1));
+        }
         // At most 255.
-        let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS));
-        // Below 64.
-        let face = self.listed.batches.faces(s, lane);
-        let ShadedData { steps, numbers, sums: starts, .. } = &mut *self.data;
-        let steps = &steps[self.listed.batches.current()];
-        if self.kind == Kind::Fixed16 {
-            let n = numerator_at(s, lane, &setup.shade, j, parts.row);
-            let quotient = (lane.load_f64(s, &self.area), lane.load_f64(s, &setup.inverse));
-            let start = sum_16_16(s, n, quotient, lane.load_f64(s, &self.fraction), magic);
-            let skipped = s.sub_i32(s.low_bits(parts.start), s.low_bits(parts.row));
-            let step = lane.load_i32(s, &steps.words[0]);
-            s.store_i32(s.add_i32(start, s.mul_i32(step, skipped)), numbers.eight(record, 0));
-            s.store_i32(step, numbers.eight(record, 1));
-            return records;
-        }
-        if self.kind == Kind::Hyperbolic {
-            let columns = s.sub(parts.start, magic);
-            s.store_i32(face, numbers.eight(record, 0));
-            for (i, [at_first, per_row]) in self.planes.iter().enumerate() {
-                let at_row = s.mul_add(lane.load_f64(s, per_row), j, lane.load_f64(s, at_first));
-                let sum = s.mul_add(lane.load_f64(s, &steps.sums[i]), columns, at_row);
-                s.store_i64(s.bits(sum), starts.eight(record, i));
-            }
-            return records;
-        }
-        // A step of zero is not −0.
-        let falls = s.is_greater(s.splat_i32(0), lane.load_i32(s, &steps.words[1]));
-        let at = s.select(falls, s.sub(parts.end, s.splat_f64(1.0)), parts.row);
-        let first = s.sub_i32(s.low_bits(parts.start), s.low_bits(at));
-        s.store_i32(s.or_i32(face, s.shl_i32(first, 16)), numbers.eight(record, 0));
-        let columns = s.sub(at, magic);
-        let mut sums = [s.splat_f64(0.0); 2];
-        for (weights, values) in self.weights.iter().zip(&self.values) {
-            // Whole numbers: exact.
-            let weight = s.mul_add(lane.load_f64(s, &weights[1]), j, lane.load_f64(s, &weights[0]));
-            let weight = s.mul_add(lane.load_f64(s, &weights[2]), columns, weight);
-            for (i, sum) in sums.iter_mut().enumerate() {
-                // Rounded twice at every level.
-                *sum = s.add(*sum, s.mul(weight, lane.load_f64(s, &values[i])));
-            }
-        }
-        for (i, sum) in sums.into_iter().enumerate() {
-            s.store_i64(s.bits(sum), starts.eight(record, i));
-        }
-        records
+        s.add_i32(s.splat_i32(record as i32), s.load_i32(&NUMBERS))
     }
 
-    /// The exact steps in f32 of a triangle too large for 64-bit sums.
     #[inline(never)]
     fn set_up_large(&mut self, i: usize) {
         #[cfg(feature = "alloc")]
         if self.kind == Kind::Float {
-            let triangle = self.listed.triangle(self.listed.batches.current() * LANES + i);
-            let steps = FloatPlane::of_values(&triangle, triangle.shades()).steps;
-            for (to, step) in self.data.steps[self.listed.batches.current()].words.iter_mut().zip(steps) {
-                to[i % LANES] = step.to_bits().cast_signed();
-            }
+            let face = self.listed.batches.current() * LANES + i;
+            let triangle = self.listed.triangle(face);
+            self.data.shades.set_up_large(face, &triangle, triangle.shades());
         }
         let _ = i;
     }
@@ -456,15 +587,16 @@ fn draw_listed_by<S: Lanes8>(s: S, shades: &mut Shaded8<'_>, list: &mut SpanList
     shades.listed.batches.records = Records::NONE;
     match shades.kind {
         Kind::Fixed16 => {
-            let numbers = &shades.data.numbers;
+            let numbers = &shades.data.shades.numbers;
             let number = |record: u32, i: usize| numbers.of(record as usize, i).cast_unsigned();
             let of_span = |record: u32| (number(record, 0), number(record, 1));
             let nearer = target.kernel.fill_spans_16_16(target.pixels, &mut target.cells, list, of_span);
             list.clear(nearer);
         }
-        Kind::Hyperbolic => shades.draw_by::<S, true>(s, list, target),
+        // The kind is a constant of each loop.
+        Kind::Hyperbolic => shades.draw_by(s, Kind::Hyperbolic, list, target),
         #[cfg(feature = "alloc")]
-        Kind::Float => shades.draw_by::<S, false>(s, list, target),
+        Kind::Float => shades.draw_by(s, Kind::Float, list, target),
     }
 }
 

@@ -66,3 +66,10 @@ pub(crate) fn fill_float_blocks(
         first += LANES as i32;
     }
 }
+
+/// Fills `shades` with the shades in 8.8, truncated, that [`fill_float`] rounds.
+pub(crate) fn float_shades(shades: &mut [u16], first: i32, n: [f32; 2], d: [f32; 2], range: [f32; 2]) {
+    for (shade, k) in shades.iter_mut().zip(first..) {
+        *shade = (quotient(k, n, d, range) * 256.0) as u16;
+    }
+}

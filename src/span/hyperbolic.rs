@@ -51,6 +51,20 @@ pub(crate) fn fill_estimated_blocks<S: Lanes8>(
     undecided == 0
 }
 
+/// Fills `shades` with truncated shades in 8.8, as [`fill_estimated_blocks`] does bytes: 256 times a shade is estimated.
+/// Returns false where an estimate cannot decide.
+#[cfg(feature = "alloc")]
+pub(crate) fn estimated_shades(shades: &mut [u16], [n, dn]: [f64; 2], [d, dd]: [f64; 2]) -> bool {
+    let mut is_sure = true;
+    for (i, shade) in shades.iter_mut().enumerate() {
+        let k = i as f64;
+        let estimate = nearest_whole((n + k * dn) / (d + k * dd));
+        is_sure &= estimate & 0xFF != 0;
+        *shade = (estimate >> 8) as u16;
+    }
+    is_sure
+}
+
 /// The floor of n / d for a quotient within ±2⁴⁸ and a positive d; n within ±2¹²⁶.
 #[inline]
 pub(crate) fn floor_quotient(n: i128, d: i128) -> i64 {

@@ -749,6 +749,42 @@ fn without_effects_faces_are_plain_triangles() {
     assert!(long > 50, "{long} with long spans");
 }
 
+/// In f32, faces too tall for sums of 64 bits are drawn like the others: alone, together, and through a pipeline.
+#[test]
+fn tall_faces_in_f32_are_those_alone() {
+    let mut tried = Tried::new("tall_faces_in_f32_are_those_alone", 300);
+    let mut random = Random::named("tall");
+    let size = Size { width: 60, height: 4_000, pitch: 60 };
+    let interpolation = Interpolation::GouraudFloat;
+    let kernels: Vec<Kernel> = Kernel::available().collect();
+    let pipeline = PixelPipeline { source: ShadeSource::Shaded(interpolation), ..PixelPipeline::PLAIN };
+    let channel = PixelPipeline { channels: Some(Mix::Only(0)), ..pipeline };
+    while tried.more() {
+        let vertices = [0, 1, 2].map(|_| {
+            let (x, y) = (random.within(0, 60 * 256), random.within(0, 4_000 * 256));
+            triangles::vertex(x, y, random.within(0x8000, 0xFF00), random.within(1 << 29, 1 << 30))
+        });
+        let attributes = vertices.map(|vertex| Attributes { channels: [vertex.shade(); 3], ..Attributes::default() });
+        let kernel = random.one_of(&kernels);
+        let [alone, together] = [false, true].map(|together| {
+            let mut pixels = size.pixels();
+            size.draw(&mut pixels, size.rows(), |frame| {
+                let mut raster = Raster::new(frame).with_kernel(kernel);
+                match together {
+                    false => raster.triangle(&vertices, interpolation),
+                    true => raster.triangles([(&vertices, interpolation)]),
+                }
+            });
+            pixels
+        });
+        assert!(together == alone, "{kernel}: {vertices:?}");
+        for pipeline in [&pipeline, &channel] {
+            assert!(draw(size, &vertices, &attributes, pipeline, None, kernel) == alone, "{kernel}: {vertices:?}");
+        }
+        tried.add(1);
+    }
+}
+
 /// A look without what needs stages, so that one loop shows its texels.
 fn fused(look: PixelPipeline<'_>) -> PixelPipeline<'_> {
     let source = match look.source {

@@ -98,7 +98,7 @@ impl EffectBatch {
     /// The maximum number of faces that a batch can hold.
     pub const CAPACITY: usize = CAPACITY;
 
-    /// An empty batch. Its first drawing allocates 120 kB.
+    /// An empty batch. Its first drawing allocates 150 kB.
     #[must_use]
     pub fn new() -> Self {
         Self::default()

@@ -4,12 +4,13 @@
 //! first covered pixel inside the frame, so every value is exact at its first pixel. A clip rectangle may hide its
 //! first pixels, but changes no byte of the others.
 //!
-//! Its record has the texture coordinates, the start and step of each linear value, and a [`Mark`]. Shades that are
-//! linear on the face, and light at every pixel, are computed by the stage that needs them, from the mark and the planes
-//! that set-up leaves for eight faces.
+//! Its record has the texture coordinates, the start and step of each linear value, and a [`Mark`]. Other shadings add
+//! theirs ([`ShadedValues`]). Light at every pixel is computed by its stage, from the mark and the planes that set-up
+//! leaves for eight faces.
 
 use alloc::boxed::Box;
 use alloc::vec;
+use alloc::vec::Vec;
 
 use super::direct::Direct;
 use super::pipeline::{PixelPipeline, ShadeSource};
@@ -30,6 +31,7 @@ use crate::raster::row_shader::{pieces, start_at};
 use crate::raster::rows::{Batches, Lane, Parts, RowEnds, Shades8, advance, value_of};
 use crate::raster::setup::{Basis, Corners8, Floats, FrameLayout, Ints, TriangleSetup8, ValuePlanes8};
 use crate::raster::setup_texture::{AffinePlanes8, PerspectivePlanes8, texture_of_corners};
+use crate::raster::shaded::{Kind, ShadedValues};
 use crate::simd::Lanes8;
 use crate::span::list::SpanList;
 use crate::span::records::{RecordColumns, Records};
@@ -169,6 +171,8 @@ pub(super) struct SpanData {
     sums: RecordColumns<i64, SUMS>,
     /// The sums rounded to f32; unused for a face that is walked.
     single_sums: RecordColumns<f32, SINGLE_SUMS>,
+    /// The shade, or three channels, if they are not linear in 8.8.
+    shaded: Vec<ShadedValues>,
     /// Made on the heap, since stacks may be small.
     planes: Box<[FacePlanes8; Batches::COUNT]>,
 }
@@ -188,6 +192,10 @@ struct Wanted {
     slots: usize,
     /// True if shades and channels are reseeded with each span.
     reseeds: bool,
+    /// How the shade or the channels are interpolated, if not linearly in 8.8.
+    kind: Option<Kind>,
+    /// True if that applies to the channels, not to the shade.
+    has_channels: bool,
 }
 
 impl Wanted {
@@ -206,9 +214,15 @@ impl Wanted {
             want(Value::Slope(i), by_table && !channels && i < 2);
         }
         let reseeds = !matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud88));
-        let shade = !reseeds || matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud88Reseeded));
+        let kind = match pipeline.source {
+            ShadeSource::Shaded(interpolation) => Kind::of(interpolation),
+            _ => None,
+        };
+        let shade = !reseeds
+            || matches!(pipeline.source, ShadeSource::Shaded(Interpolation::Gouraud88Reseeded))
+            || kind == Some(Kind::Fixed16) && !channels;
         let slots = values.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
-        Self { texture, last_level, shade, values, slots, reseeds }
+        Self { texture, last_level, shade, values, slots, reseeds, kind, has_channels: channels }
     }
 }
 
@@ -253,7 +267,16 @@ impl SpanData {
         let (numbers, coordinates) = (RecordColumns::new(), RecordColumns::new());
         let (sums, single_sums) = (RecordColumns::new(), RecordColumns::new());
         let planes = Box::try_from(vec![FacePlanes8::default(); Batches::COUNT]).unwrap_or_else(|_| no_planes());
-        Self { numbers, coordinates, sums, single_sums, planes }
+        Self { numbers, coordinates, sums, single_sums, shaded: Vec::new(), planes }
+    }
+
+    /// Makes room for the shade or channels, apart from the rest, since stacks may be small.
+    #[inline(never)]
+    pub(super) fn add_shaded(&mut self) {
+        self.shaded.reserve_exact(3);
+        for _ in 0..3 {
+            self.shaded.push(ShadedValues::default());
+        }
     }
 
     /// The sums at the first pixel of a span, where the texture is linear on the face.
@@ -313,6 +336,68 @@ impl ListedFaces<'_> {
         }
     }
 
+    /// Sets up shades or channels that are not linear in 8.8, given the linear planes of eight faces.
+    #[inline(always)]
+    fn set_up_shaded<S: Lanes8>(&mut self, s: S, corners: &Corners8, (setup, layout): (&TriangleSetup8, FrameLayout)) {
+        let Wanted { kind: Some(kind), has_channels, .. } = self.wanted else { return };
+        let mut unused = TriangleSetup8::NONE;
+        let basis = &unused.set_up(s, corners, (layout, false), false);
+        let (first, batch) = (self.batches.first_pick(), self.batches.current());
+        let eight = &self.faces.range(first, self.faces.picks.picks.len().min(first + LANES));
+        let SpanData { shaded, planes, .. } = &mut *self.data;
+        for (i, shaded) in shaded.iter_mut().enumerate().take(if has_channels { 3 } else { 1 }) {
+            let (values, linear) = match has_channels {
+                true => {
+                    let channel = Value::Channel(i);
+                    (value_of_corners(eight, channel), &planes[batch].values[channel.slot()])
+                }
+                false => (corners.shade, &setup.shade),
+            };
+            shaded.set_up(s, (kind, batch), basis, (corners, &values), linear);
+        }
+    }
+
+    /// Stores the starts of shades or channels that are not linear in 8.8, given the marks of eight spans.
+    #[inline(always)]
+    fn begin_shaded<S: Lanes8>(&mut self, s: S, lane: impl Lane<S>, setup: &TriangleSetup8, record: usize) {
+        let Wanted { kind: Some(kind), has_channels, .. } = self.wanted else { return };
+        let SpanData { numbers, shaded, planes, .. } = &mut *self.data;
+        let (batch, planes) = (self.batches.current(), &planes[self.batches.current()]);
+        let [mark, position] = [0, 1].map(|i| s.load_i32(numbers.eight(record, i)));
+        let magic = s.splat_f64(ROUND_MAGIC);
+        let sum = |whole: S::I32| s.add(s.to_f64(whole), magic);
+        let before = s.and_i32(mark, s.splat_i32(127 << 6));
+        let (seed, j) = (s.and_i32(position, s.splat_i32(0xFFFF)), s.to_f64(s.shr_i32(position, 16)));
+        let end = s.add_i32(s.add_i32(seed, s.shr_i32(mark, 13)), s.splat_i32(1));
+        let parts = Parts { row: sum(s.sub_i32(seed, before)), end: sum(end), seed: sum(seed), start: sum(seed) };
+        for (i, shaded) in shaded.iter_mut().enumerate().take(if has_channels { 3 } else { 1 }) {
+            let linear = if has_channels { &planes.values[Value::Channel(i).slot()] } else { &setup.shade };
+            shaded.begin_spans(s, lane, (kind, batch, record), (linear, &setup.inverse), (j, &parts, parts.seed));
+        }
+    }
+
+    /// Completes the set-up in f32 of triangle `i` of the eight.
+    fn set_up_large(&mut self, i: usize) {
+        let face = self.batches.current() * LANES + i;
+        let corners = FaceCorners::new(&self.faces, self.batches.first + face);
+        let channels = self.wanted.has_channels;
+        for (i, shaded) in self.data.shaded.iter_mut().enumerate().take(if channels { 3 } else { 1 }) {
+            let values = if channels { corners.value(Value::Channel(i)) } else { corners.triangle.shades() };
+            shaded.set_up_large(face, &corners.triangle, values);
+        }
+    }
+
+    /// The shade or channel that is set up for eight faces, if it is not linear in 8.8.
+    pub(super) fn shaded(&self, value: Option<Value>) -> Option<(Kind, &ShadedValues)> {
+        let i = match value {
+            None => 0,
+            Some(Value::Channel(i)) => i,
+            _ => return None,
+        };
+        let kind = self.wanted.kind.filter(|_| self.walked.is_none())?;
+        Some((kind, self.data.shaded.get(i)?))
+    }
+
     /// The mapping and the last level of an image with levels.
     #[cfg(test)]
     pub(super) fn levels(&self) -> Option<(Option<Mapping>, u32)> {
@@ -355,6 +440,13 @@ impl<'a> EffectSpans<'a> {
     ) -> Self {
         let wanted = Wanted::by(pipeline);
         let direct = Direct::of(pipeline);
+        if wanted.kind.is_some() {
+            // Channels are dithered when they are mixed.
+            let is_dithered = pipeline.dither().is_some() && !wanted.has_channels;
+            for shaded in &mut data.shaded {
+                shaded.is_truncated = is_dithered;
+            }
+        }
         let listed = ListedFaces { faces, wanted, data, batches: Batches::NONE, walked: None, direct };
         Self { listed, pipeline, buffers }
     }
@@ -467,11 +559,18 @@ impl Shades8 for EffectSpans<'_> {
         // Out of line, so that the loop over faces stays small.
         s.apart(
             #[inline(always)]
-            move || {
+            || {
                 let basis = setup.set_up(s, corners, of, listed.wanted.shade);
                 listed.set_up_planes(s, &basis, corners, setup);
             },
         );
+        if listed.wanted.kind.is_some() {
+            let (setup, layout) = (&*setup, of.0);
+            s.apart(
+                #[inline(always)]
+                move || listed.set_up_shaded(s, corners, (setup, layout)),
+            );
+        }
     }
 
     #[inline(always)]
@@ -484,10 +583,10 @@ impl Shades8 for EffectSpans<'_> {
         parts: &Parts<S>,
     ) -> S::I32 {
         let ListedFaces { wanted, data, batches, .. } = &mut self.listed;
-        let SpanData { numbers, coordinates, sums, single_sums, planes } = &mut **data;
+        let SpanData { numbers, coordinates, sums, single_sums, planes, .. } = &mut **data;
         let (planes, record) = (&planes[batches.current()], batches.records.begin());
         let (j, row, seed) = (ends.j, s.low_bits(parts.row), s.low_bits(parts.seed));
-        let Wanted { shade, values, slots, reseeds, texture, .. } = *wanted;
+        let Wanted { shade, values, slots, reseeds, texture, kind, .. } = *wanted;
         let inverse = &setup.inverse;
         if shade {
             s.store_i32(value_in(s, lane, (&setup.shade, inverse), j, parts, reseeds), numbers.eight(record, 2));
@@ -530,9 +629,24 @@ impl Shades8 for EffectSpans<'_> {
             }
             None => {}
         }
+        if kind.is_some() {
+            let listed = &mut self.listed;
+            // Everything is in memory, so the call spills nothing.
+            s.apart(
+                #[inline(always)]
+                move || listed.begin_shaded(s, lane, setup, record),
+            );
+        }
         // Below 256.
         let records = s.add_i32(s.splat_i32(record as i32), s.load_i32(&lanes::NUMBERS));
         s.or_i32(records, s.shl_i32(skipped, 8))
+    }
+
+    #[inline(never)]
+    fn set_up_large(&mut self, i: usize) {
+        if self.listed.wanted.kind == Some(Kind::Float) {
+            self.listed.set_up_large(i);
+        }
     }
 
     #[inline(always)]

@@ -9,15 +9,16 @@ use crate::raster::interpolation::Interpolation;
 use crate::raster::reference::cover::Row;
 use crate::raster::reference::level::LevelPlane;
 use crate::raster::reference::texture::{AffineLevel, PerspectiveTexture};
-use crate::raster::row_shader::RowShader;
+use crate::raster::row_shader::{RowShader, to_bytes};
+use crate::raster::shaded::{Kind, ShadedValues};
 #[cfg(test)]
 use crate::simd::Portable;
 use crate::simd::{Lanes8, compiled_for_each_level};
-use crate::span::Kernel;
 use crate::span::dither::{ThresholdRow, Thresholds, fill_dithered};
 use crate::span::list::{self, SpanDepths, SpanList};
 use crate::span::target::SpanDepth;
 use crate::span::texture::{PerspectiveSums, SpanValues, Tint};
+use crate::span::{Kernel, PIECE};
 
 /// The maximum number of pixels that pass through the stages together, and room for writing them eight at a time.
 pub(super) const PIXELS: usize = 4_096;
@@ -200,6 +201,30 @@ impl<'a> Spans<'a> {
         RowShader::of_values(&face.triangle, values, interpolation)
     }
 
+    /// Fills a span whose bytes estimates cannot decide.
+    #[cold]
+    #[inline(never)]
+    fn fill_exactly(&self, i: usize, shaded: Shaded, out: &mut [u8]) {
+        let (span, shader) = (self.span(i), self.shader(i, shaded));
+        let thresholds = shaded.dither.map(|dither| span.thresholds(dither));
+        shader.piece(&span.row(), span.x, &mut out[span.pixels()], thresholds, Kernel::PORTABLE);
+    }
+
+    /// Fills spans with a shader for each face: one that is walked, or that covers pixels of its own.
+    #[inline(never)]
+    fn fill_by_shader(&self, shaded: Shaded, out: &mut [u8], kernel: Kernel) {
+        let mut i = 0;
+        while i < self.count {
+            let (end, shader) = (self.end_of_face(i), self.shader(i, shaded));
+            for i in i..end {
+                let span = self.span(i);
+                let thresholds = shaded.dither.map(|dither| span.thresholds(dither));
+                shader.piece(&span.row(), span.x, &mut out[span.pixels()], thresholds, kernel);
+            }
+            i = end;
+        }
+    }
+
     /// The face of a span, and its corners' values.
     #[inline(never)]
     pub(super) fn corners(&self, span: &Span) -> FaceCorners<'a> {
@@ -315,7 +340,10 @@ impl<'a> Spans<'a> {
             Interpolation::Gouraud88 | Interpolation::Gouraud88Reseeded => {
                 fill_linear_at_best(kernel, kernel, self, shaded, out);
             }
-            _ => fill_by_shader(kernel.simd_level(), self, shaded, out, kernel),
+            _ => match self.listed.shaded(shaded.value) {
+                Some(values) => fill_shaded(kernel.simd_level(), self, values, shaded, out),
+                None => self.fill_by_shader(shaded, out, kernel),
+            },
         }
     }
 
@@ -359,28 +387,52 @@ impl Shaded {
 }
 
 compiled_for_each_level! {
-    /// Fills spans with a shader for each face.
+    /// Fills spans with values that were set up for eight faces.
     #[inline(never)]
-    fn fill_by_shader[][](spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) = fill_by_shader_at, up to AVX2;
+    fn fill_shaded[][](spans: &Spans<'_>, values: (Kind, &ShadedValues), shaded: Shaded, out: &mut [u8])
+        = fill_shaded_at, up to AVX2;
 }
 
 #[inline(always)]
-fn fill_by_shader_at<S: Lanes8>(s: S, spans: &Spans<'_>, shaded: Shaded, out: &mut [u8], kernel: Kernel) {
-    let mut i = 0;
-    while i < spans.count() {
-        let end = spans.end_of_face(i);
-        let shader = spans.shader(i, shaded);
-        for i in i..end {
+fn fill_shaded_at<S: Lanes8>(
+    s: S,
+    spans: &Spans<'_>,
+    (kind, values): (Kind, &ShadedValues),
+    shaded: Shaded,
+    out: &mut [u8],
+) {
+    if let Some(dither) = shaded.dither {
+        for i in 0..spans.count() {
             let span = spans.span(i);
-            match shaded.dither {
-                None => shader.blocks(s, (&span.row(), span.x), (&mut out[span.first..], span.len), kernel),
-                Some(dither) => {
-                    let thresholds = span.thresholds(dither);
-                    shader.piece(&span.row(), span.x, &mut out[span.pixels()], Some(thresholds), kernel);
-                }
+            let mut shades = [0; PIECE];
+            let shades = &mut shades[..span.len];
+            match values.shades(kind, (spans.face(i), spans.record(i)), shades) {
+                true => to_bytes(shades, span.thresholds(dither), span.column(), &mut out[span.pixels()]),
+                false => spans.fill_exactly(i, shaded, out),
             }
         }
-        i = end;
+        return;
+    }
+    // The kind is a constant of each loop.
+    match kind {
+        Kind::Fixed16 => fill_blocks_of(s, spans, (Kind::Fixed16, values), shaded, out),
+        Kind::Hyperbolic => fill_blocks_of(s, spans, (Kind::Hyperbolic, values), shaded, out),
+        Kind::Float => fill_blocks_of(s, spans, (Kind::Float, values), shaded, out),
+    }
+}
+#[inline(always)]
+fn fill_blocks_of<S: Lanes8>(
+    s: S,
+    spans: &Spans<'_>,
+    (kind, values): (Kind, &ShadedValues),
+    shaded: Shaded,
+    out: &mut [u8],
+) {
+    for i in 0..spans.count() {
+        let (first, len) = spans.range(i);
+        if !values.fill_blocks(s, kind, (spans.face(i), spans.record(i)), (&mut out[first..], len)) {
+            spans.fill_exactly(i, shaded, out);
+        }
     }
 }
 
