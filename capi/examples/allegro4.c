@@ -23,8 +23,10 @@ static void flush(void)
     m13_mesh mesh;
     m13_material material;
     BITMAP *to = of.bitmap;
+    size_t pitch;
     if (listed == 0) return;
-    m13_target_init(&target, to->line[0], (size_t)(to->w * to->h), (uint32_t)to->w, (uint32_t)to->h, (size_t)to->w);
+    pitch = to->h > 1 ? (size_t)(to->line[1] - to->line[0]) : (size_t)to->w; /* a part of a bitmap has its parent's */
+    m13_target_init(&target, to->line[0], pitch * (size_t)(to->h - 1) + (size_t)to->w, (uint32_t)to->w, (uint32_t)to->h, pitch);
     m13_target_clip(&target, to->cl, to->ct, to->cr, to->cb);
     m13_mesh_init(&mesh, list, listed, sizeof list[0]);
     mesh.texture = 8, mesh.shade = 16;
@@ -42,15 +44,18 @@ static void flush(void)
 static void m13_polygon3d(BITMAP *bitmap, int type, BITMAP *texture, int count, V3D *corners[])
 {
     int i, k;
-    if (bitmap != of.bitmap || type != of.type || texture != of.texture || listed + 3 * (uint32_t)count > 4096)
+    if (bitmap != of.bitmap || type != of.type || texture != of.texture)
         flush();
     of.bitmap = bitmap, of.type = type, of.texture = texture;
-    for (i = 2; i < count; i++)
+    for (i = 2; i < count; i++) {
+        if (listed + 3 > sizeof list / sizeof list[0])
+            flush();
         for (k = 0; k < 3; k++, listed++) {
             V3D *v = corners[k == 0 ? 0 : i - 2 + k];
             list[listed].x = v->x, list[listed].y = v->y, list[listed].u = v->u, list[listed].v = v->v;
             list[listed].shade = (type == POLYTYPE_FLAT ? corners[0]->c : v->c) << 16; /* equal shades are flat */
         }
+    }
 }
 
 static void corner(V3D *to, int i, int j)

@@ -47,7 +47,7 @@
  *
  * Greater depths are nearer, and 0 is as far away as possible. If w is the distance along the view axis, depth is near / w,
  * which is linear on the screen, as a depth buffer needs it. Shades, fog and slopes beyond their range are clamped; a depth
- * outside 0 to 1, or a number that is not finite, is rejected.
+ * outside 0 to 1, or a number that is not finite, is rejected where it is used.
  *
  * License: MIT or Apache-2.0. */
 #ifndef MODE13H_H
@@ -77,7 +77,7 @@ uint32_t m13_version(void);
 #define M13_SHORT (-6)        /* there are fewer bytes than the rows need, or more than memory can hold */
 #define M13_DEPTH (-7)        /* a depth buffer must have 16 or 32 bits, and a value for each pixel */
 #define M13_ALIGNMENT (-8)    /* a depth buffer, a picture or memory is not aligned */
-#define M13_OVERLAP (-9)      /* an input overlaps the memory that is drawn into */
+#define M13_OVERLAP (-9)      /* an input overlaps memory that is written */
 #define M13_INDEX (-10)       /* an index refers to a vertex that does not exist */
 #define M13_COUNT (-11)       /* triangles need a multiple of three vertices or indices */
 #define M13_LAYOUT (-12)      /* an attribute is missing, or does not fit into the stride */
@@ -125,7 +125,8 @@ int m13_target_clip(m13_target *target, int32_t x0, int32_t y0, int32_t x1, int3
 
 /* Says that `pixels` (and the depth buffer) hold `rows` rows from `first_row` on and no others. Coordinates remain those of
  * the whole frame, so a frame can be drawn band by band with little memory (begin with m13_target_init_band), or by several
- * threads; its bytes are the same. */
+ * threads; its bytes are the same. Bytes between `width` and the pitch may be rewritten unchanged, so no two threads may
+ * draw frames that lie side by side in the same rows of memory. */
 int m13_target_band(m13_target *target, uint32_t first_row, uint32_t rows);
 
 /* Checks the whole target, as each drawing call does. */

@@ -41,7 +41,7 @@ codes! {
     Short = -6, "there are fewer bytes than the rows need, or more than memory can hold";
     Depth = -7, "a depth buffer must have 16 or 32 bits, and a value for each pixel";
     Alignment = -8, "a depth buffer, a picture or memory is not aligned";
-    Overlap = -9, "an input overlaps the memory that is drawn into";
+    Overlap = -9, "an input overlaps memory that is written";
     Index = -10, "an index refers to a vertex that does not exist";
     Count = -11, "triangles need a multiple of three vertices or indices";
     Layout = -12, "an attribute is missing, or does not fit into the stride";

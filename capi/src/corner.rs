@@ -156,6 +156,9 @@ pub(crate) struct Floats;
 /// 16.16: the same, but depths are u32, of which 2³⁰ lies at the near plane.
 pub(crate) struct Fixed;
 
+/// Texture coordinates from here on are multiples of 65,536 texels: 2⁴⁷.
+const LARGEST: f64 = 140_737_488_355_328.0;
+
 /// `floor(x)`, for numbers that fit.
 fn floor(x: f64) -> i64 {
     let whole = x as i64;
@@ -214,8 +217,8 @@ impl Door for Floats {
 
     fn attributes(values: &Values<f64>) -> Attributes {
         Attributes {
-            // Coordinates that are too large wrap, as the texture does.
-            texture: values.texture.map(|c| floor(c * 65_536.0 + 0.5) as i32),
+            // Coordinates wrap, as the texture does.
+            texture: values.texture.map(|c| if c.abs() < LARGEST { floor(c * 65_536.0 + 0.5) as i32 } else { 0 }),
             fog: byte_of_float(values.fog),
             slope: values.slope.map(byte_of_float),
         }
@@ -319,6 +322,16 @@ pub(crate) struct Source {
     mesh: Mesh,
 }
 
+/// The values of vertices that a call reads, besides their positions.
+#[derive(Clone, Copy)]
+pub(crate) struct Needs {
+    pub(crate) shade: bool,
+    pub(crate) depth: bool,
+    pub(crate) texture: bool,
+    pub(crate) fog: bool,
+    pub(crate) slope: bool,
+}
+
 /// The memory of a mesh's parts.
 pub(crate) struct Parts {
     pub(crate) vertices: usize,
@@ -327,7 +340,7 @@ pub(crate) struct Parts {
 
 impl Source {
     /// Checks all of a mesh except the values of its indices. Vertices with w need no depth.
-    pub(crate) fn new(mesh: Mesh, (has_shade, has_depth): (bool, bool)) -> Outcome<(Self, Parts)> {
+    pub(crate) fn new(mesh: Mesh, needs: Needs) -> Outcome<(Self, Parts)> {
         let Mesh { stride, position, depth, shade, texture, fog, slope, .. } = mesh;
         if mesh.homogeneous > 1 {
             return Err(Refusal::Value);
@@ -338,11 +351,11 @@ impl Source {
             _ => offset.checked_add(4 * numbers).is_some_and(|end| end <= stride),
         };
         let all = fits(position, 2 + mesh.homogeneous, true)
-            && fits(depth, 1, has_depth && mesh.homogeneous == 0)
-            && fits(shade, 1, has_shade)
-            && fits(texture, 2, false)
-            && fits(fog, 1, false)
-            && fits(slope, 2, false);
+            && fits(depth, 1, needs.depth && mesh.homogeneous == 0)
+            && fits(shade, 1, needs.shade)
+            && fits(texture, 2, needs.texture)
+            && fits(fog, 1, needs.fog)
+            && fits(slope, 2, needs.slope);
         if !all {
             return Err(Refusal::Layout);
         }
@@ -363,7 +376,16 @@ impl Source {
             },
         };
         // What nobody needs is not read, so it may be anything.
-        Ok((Self { mesh: Mesh { shade: if has_shade { shade } else { ABSENT }, ..mesh } }, parts))
+        let read = |needed: bool, offset: u32| if needed { offset } else { ABSENT };
+        let mesh = Mesh {
+            depth: read(needs.depth, depth),
+            shade: read(needs.shade, shade),
+            texture: read(needs.texture, texture),
+            fog: read(needs.fog, fog),
+            slope: read(needs.slope, slope),
+            ..mesh
+        };
+        Ok((Self { mesh }, parts))
     }
 
     /// The number of its triangles.
@@ -553,5 +575,19 @@ impl<N: Copy, K: Kept> Wide<N, K> {
         let Self { x, y, w, depth, values, .. } = self;
         let attributes = if K::HAS_ATTRIBUTES { D::attributes(values) } else { Attributes::default() };
         Some(K::new(D::vertex([*x, *y, *w, *depth, values.shade], near)?, attributes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Texture coordinates of any size wrap every 65,536 texels.
+    #[test]
+    fn large_texture_coordinates_wrap() {
+        for (c, wrapped) in [(2e14, 0), (-1e20, 0), (f32::MAX, 0), (-65_537.0, -65_536), (16_777_215.0, -65_536)] {
+            let values = Values { texture: [f64::from(c); 2], ..Values::default() };
+            assert_eq!(Floats::attributes(&values).texture, [wrapped; 2], "{c}");
+        }
     }
 }

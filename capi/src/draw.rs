@@ -8,11 +8,11 @@ use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal, Sized32, Stats, Targe
 use crate::clip::{Progress, clip, doubled_area};
 #[cfg(feature = "effects")]
 use crate::corner::Ready;
-use crate::corner::{Door, Fixed, Floats, Kept, Source};
+use crate::corner::{Door, Fixed, Floats, Kept, Needs, Source};
 use crate::target::{Bytes, Checked, Depth, check};
 
 #[cfg(feature = "effects")]
-use crate::effects::{Context, Effects};
+use crate::effects::{Context, Effects, memory_of};
 /// Without effects there is no context.
 #[cfg(not(feature = "effects"))]
 enum Context {}
@@ -432,7 +432,8 @@ unsafe fn draw_by(
     stats: *mut Stats,
 ) -> Outcome {
     // SAFETY: by the caller, and so is all that follows.
-    let (checked, mesh, material) = unsafe { (check(target)?, read(mesh)?, read(material)?) };
+    #[cfg_attr(not(feature = "effects"), expect(unused_mut, reason = "there is no context"))]
+    let (mut checked, mesh, material) = unsafe { (check(target)?, read(mesh)?, read(material)?) };
     if !stats.is_null() {
         // SAFETY: not null.
         unsafe { read(stats) }?;
@@ -444,9 +445,23 @@ unsafe fn draw_by(
     let pointers = [material.texels, material.slope_table, material.fog_table, material.blend_table];
     let wants_effects =
         pointers.iter().any(|table| !table.is_null()) || material.dither > 0 || material.keep_depth == 0;
-    let has_shade = !matches!(interpolation, Interpolation::Flat(_)) && material.slope_table.is_null();
-    let has_depth = material.shading == 4 || !matches!(checked.depth, Depth::None);
-    let (source, parts) = Source::new(mesh, (has_shade, has_depth))?;
+    if wants_effects {
+        #[cfg(not(feature = "effects"))]
+        return Err(Refusal::Unsupported);
+        // SAFETY: by the caller.
+        #[cfg(feature = "effects")]
+        checked.add_context(unsafe { memory_of(context) }?)?;
+    }
+    let [has_texels, has_slopes, has_fog] =
+        [material.texels, material.slope_table, material.fog_table].map(|pointer| !pointer.is_null());
+    let needs = Needs {
+        shade: !matches!(interpolation, Interpolation::Flat(_)) && !has_slopes,
+        depth: material.shading == 4 || !matches!(checked.depth, Depth::None) || has_texels && material.mapping != 0,
+        texture: has_texels,
+        fog: has_fog,
+        slope: has_slopes,
+    };
+    let (source, parts) = Source::new(mesh, needs)?;
     for (pointer, length) in [(mesh.vertices, parts.vertices), (mesh.indices, parts.indices)] {
         if length > 0 {
             checked.apart_from(Bytes::new(pointer, length)?)?;
@@ -463,8 +478,8 @@ unsafe fn draw_by(
         return Err(Refusal::Unsupported);
         #[cfg(feature = "effects")]
         {
-            // SAFETY: by the caller.
-            let mut effects = unsafe { Effects::new(context, &checked, &mesh, &material, interpolation) }?;
+            // SAFETY: the context has been checked; the rest by the caller.
+            let mut effects = unsafe { Effects::new(context, &checked, &material, interpolation) }?;
             with_raster!(checked, |raster| {
                 // SAFETY: the bytes of vertices and indices are there, and indices have been checked.
                 unsafe {

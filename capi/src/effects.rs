@@ -9,7 +9,7 @@ use mode13h::internals::span::texture::{Texels, fill_affine};
 use mode13h::raster::{Frame, Interpolation, Raster};
 use mode13h::settings::{DitherPattern, Mapping};
 
-use crate::abi::{ABSENT, Material, Mesh, Outcome, Refusal};
+use crate::abi::{Material, Outcome, Refusal};
 use crate::corner::Ready;
 use crate::target::{Bytes, Checked};
 
@@ -124,32 +124,34 @@ pub(crate) struct Effects<'a> {
     pipeline: PixelPipeline<'a>,
 }
 
+/// Checks a context. Returns its memory.
+///
+/// # Safety
+/// `context` is null or one that `init` has made.
+pub(crate) unsafe fn memory_of(context: *const Context) -> Outcome<Bytes> {
+    if context.is_null() || !context.addr().is_multiple_of(16) {
+        return Err(Refusal::Context);
+    }
+    // SAFETY: not null.
+    if unsafe { (&raw const (*context).magic).read() } != MAGIC {
+        return Err(Refusal::Context);
+    }
+    Bytes::new(context, BYTES)
+}
+
 impl Effects<'_> {
-    /// Checks the context and the material.
+    /// Checks the material.
     ///
     /// # Safety
-    /// `context` is null or one that `init` has made, and tables and pictures of the material are as long as stated.
+    /// The context has been checked, and tables and pictures of the material are as long as stated.
     pub(crate) unsafe fn new(
         context: *mut Context,
         target: &Checked<'_>,
-        mesh: &Mesh,
         material: &Material,
         interpolation: Interpolation,
     ) -> Outcome<Self> {
-        if context.is_null() || !context.addr().is_multiple_of(16) {
-            return Err(Refusal::Context);
-        }
-        // SAFETY: not null.
-        if unsafe { (&raw const (*context).magic).read() } != MAGIC {
-            return Err(Refusal::Context);
-        }
-        target.apart_from(Bytes::new(context, BYTES)?)?;
         // SAFETY: made by `init`, and nobody else uses it.
         let Context { batch, unlit, .. } = unsafe { &mut *context };
-        let needs = |wanted: bool, offset: u32| if wanted && offset == ABSENT { Err(Refusal::Layout) } else { Ok(()) };
-        needs(!material.texels.is_null(), mesh.texture)?;
-        needs(!material.slope_table.is_null(), mesh.slope)?;
-        needs(!material.fog_table.is_null(), mesh.fog)?;
         // SAFETY: by the caller.
         let [shades, slopes, fog, blend] = unsafe {
             [
@@ -170,9 +172,6 @@ impl Effects<'_> {
                 1 => Mapping::Every16,
                 _ => Mapping::Perspective,
             };
-            if mapping != Mapping::Affine && mesh.homogeneous == 0 && mesh.depth == ABSENT {
-                return Err(Refusal::Layout);
-            }
             Some(TextureStage { texels, levels: None, mapping, tables: [shades.unwrap_or(unlit); 3] })
         };
         let source = match (slopes, texture.is_some() && shades.is_none()) {

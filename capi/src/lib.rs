@@ -12,8 +12,9 @@
 //! | `color` | palettes, tables of 64 KiB, conversion for the screen |
 //! | `memory` | an allocator in the caller's memory, and the panic handler |
 //!
-//! Arguments are checked before anything is written. The caller's data is read by value, unaligned, and never through a
-//! reference, so it may overlap with anything except the memory that is drawn into; that is rejected.
+//! Arguments are checked before anything is written. Structs, vertices and indices are read by value, unaligned, and may
+//! overlap anything except the memory that is written; tables and texels are read through references. Any that overlap
+//! the pixels, the depths or the context are rejected.
 #![no_std]
 
 #[cfg(feature = "std")]

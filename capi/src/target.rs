@@ -49,13 +49,23 @@ pub(crate) struct Checked<'a> {
     pub(crate) clip: Rect,
     pixels: Bytes,
     depths: Option<Bytes>,
+    /// The context's memory, if it is used.
+    context: Option<Bytes>,
 }
 
 impl Checked<'_> {
-    /// Rejects a range that overlaps the memory that is drawn into.
+    /// Rejects a range that overlaps memory that is written.
     pub(crate) fn apart_from(&self, read: Bytes) -> Outcome {
         read.apart_from(self.pixels)?;
-        self.depths.map_or(Ok(()), |depths| read.apart_from(depths))
+        [self.depths, self.context].into_iter().flatten().try_for_each(|written| read.apart_from(written))
+    }
+
+    /// Adds the memory of a context to what is written.
+    #[cfg(feature = "effects")]
+    pub(crate) fn add_context(&mut self, context: Bytes) -> Outcome {
+        self.apart_from(context)?;
+        self.context = Some(context);
+        Ok(())
     }
 
     /// The part of the clip rectangle that is in the frame.
@@ -97,8 +107,11 @@ pub(crate) unsafe fn check<'a>(target: *const Target) -> Outcome<Checked<'a>> {
     let target = unsafe { read(target) }?;
     let pixels = Bytes::new(target.pixels, target.pixel_bytes)?;
     let rows = target.first_row..target.first_row.saturating_add(target.rows);
+    // Only up to the last pixel: loops rewrite bytes behind a row, and those behind the band may be another thread's.
+    let before_last = target.pitch.saturating_mul(target.rows.saturating_sub(1) as usize);
+    let length = target.pixel_bytes.min(before_last.saturating_add(target.width as usize));
     // SAFETY: not null, and no longer than a slice may be.
-    let slice = unsafe { core::slice::from_raw_parts_mut(target.pixels, target.pixel_bytes) };
+    let slice = unsafe { core::slice::from_raw_parts_mut(target.pixels, length) };
     let frame = Frame::band(slice, target.width, target.height, target.pitch, rows).map_err(refusal)?;
     let mut depths = None;
     let depth = match target.depth_bits {
@@ -116,7 +129,7 @@ pub(crate) unsafe fn check<'a>(target: *const Target) -> Outcome<Checked<'a>> {
         _ => return Err(Refusal::Depth),
     };
     let clip = Rect { x0: target.clip_x0, y0: target.clip_y0, x1: target.clip_x1, y1: target.clip_y1 };
-    Ok(Checked { frame, depth, clip, pixels, depths })
+    Ok(Checked { frame, depth, clip, pixels, depths, context: None })
 }
 
 /// Writes a struct through a pointer.

@@ -226,7 +226,7 @@ static void triangles(m13_context *context)
     bad[1].y = NAN;
     IS(M13_VERTEX, m13_triangle(&t, bad, M13_FLAT, 1));
     bad[1].y = 0, bad[1].depth = 1.5f;
-    IS(M13_VERTEX, m13_triangle(&t, bad, M13_FLAT, 1));
+    IS(M13_VERTEX, m13_triangle(&t, bad, M13_GOURAUD_PERSPECTIVE, 0));
     CHECK(memcmp(pixels, first_row, 8) == 0);
 
     IS(M13_OK, m13_mesh_init(&mesh, half, 3, sizeof half[0]));
@@ -238,6 +238,12 @@ static void triangles(m13_context *context)
     mesh.shade = offsetof(m13_vertex, shade);
     IS(M13_OK, m13_draw(&t, &mesh, &material, NULL, &stats));
     CHECK(stats.triangles == 1 && stats.refused == 0 && stats.pixels == 16 && stats.covered == 16);
+    memcpy(bad, half, sizeof bad);
+    bad[1].depth = 1.5f;
+    mesh.vertices = bad, mesh.depth = offsetof(m13_vertex, depth);
+    IS(M13_OK, m13_draw(&t, &mesh, &material, NULL, &stats)); /* nobody needs the depth */
+    CHECK(stats.refused == 0 && stats.pixels == 16);
+    mesh.vertices = half, mesh.depth = M13_ABSENT;
     material.shading = M13_GOURAUD_PERSPECTIVE;
     IS(M13_LAYOUT, m13_draw(&t, &mesh, &material, NULL, NULL)); /* no depth */
     material.shading = M13_GOURAUD;
@@ -285,6 +291,10 @@ static void triangles(m13_context *context)
         IS(M13_OK, m13_draw(&t, &mesh, &material, context, NULL));
         IS(M13_CONTEXT, m13_draw(&t, &mesh, &material, (m13_context *)(void *)(table + 16 - (uintptr_t)table % 16), NULL));
         material.texels = NULL, material.blend_table = pixels - MARGIN;
+        IS(M13_OVERLAP, m13_draw(&t, &mesh, &material, context, NULL));
+        material.blend_table = table, mesh.vertices = context;
+        IS(M13_OVERLAP, m13_draw(&t, &mesh, &material, context, NULL));
+        material.blend_table = (const uint8_t *)context + 64, mesh.vertices = half;
         IS(M13_OVERLAP, m13_draw(&t, &mesh, &material, context, NULL));
     }
     release(pixels, 32);

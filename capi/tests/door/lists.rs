@@ -1,12 +1,15 @@
 //! Random triangles through the C interface, compared with the engine's own functions.
 
+use std::ffi::c_void;
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
+
 use mode13h::raster::{DepthBuffer, Frame, Interpolation, Raster, Rect, Vertex};
-use mode13h_capi::abi::{OK, Stats, Target};
+use mode13h_capi::abi::{Material, Mesh, OK, Stats, Target};
 use mode13h_capi::draw::{m13_draw, m13_draw_x, m13_triangle, m13_triangle_x};
 use mode13h_capi::target::{m13_clear, m13_clear_depth, m13_target_clip};
 use mode13h_conformance::random::Random;
 
-use crate::{material, mesh, target};
+use crate::{Memory, material, mesh, target};
 
 const SHADINGS: [Interpolation; 5] = [
     Interpolation::Flat(77),
@@ -427,3 +430,49 @@ fn shades_are_clamped_before_triangles_are_cut() {
         assert!(drawn(0.0, is_fixed) == drawn(-1_000.0, is_fixed));
     }
 }
+
+/// A target with more bytes than its rows need, as of a band of a frame, writes none of the others: they may be another
+/// thread's.
+#[test]
+fn bytes_behind_a_band_are_not_touched() {
+    const PITCH: usize = 320;
+    let mut pixels = vec![0_u8; 2 * PITCH];
+    let whole = target(&mut pixels, 320, 2, PITCH);
+    // Two pixels at the end of the first row, in a list and through the stages of effects.
+    let corners: Vec<[f32; 3]> =
+        (0..20).flat_map(|_| [[318.0, 0.0, 9.0], [324.0, 0.0, 9.0], [318.0, 2.0, 9.0]]).collect();
+    let mut list = mesh(&corners);
+    list.shade = 8;
+    let materials = [material(1), Material { dither: 1, ..material(1) }];
+    let memory = Memory::new();
+    let upper = Band(Target { rows: 1, clip_y1: 1, ..whole }, list, materials, memory.context);
+    let (done, behind) = (AtomicBool::new(false), whole.pixels.expose_provenance() + PITCH);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let Band(upper, list, materials, context) = &{ upper };
+            for i in 0..40_000 {
+                // SAFETY: the target names a row that nobody else uses.
+                let code = unsafe { m13_draw(upper, list, &materials[i % 2], *context, std::ptr::null_mut()) };
+                assert_eq!(code, OK);
+            }
+            done.store(true, Ordering::Release);
+        });
+        // SAFETY: the second row, which the other thread must not touch.
+        let first = unsafe { &*std::ptr::with_exposed_provenance::<AtomicU8>(behind) };
+        let mut value = 0_u8;
+        while !done.load(Ordering::Acquire) {
+            value = value.wrapping_add(1);
+            first.store(value, Ordering::Relaxed);
+            for _ in 0..50 {
+                assert_eq!(first.load(Ordering::Relaxed), value, "changed by the other thread");
+            }
+        }
+    });
+    assert_eq!(pixels[318..320], [9, 9]);
+}
+
+/// What another thread draws.
+struct Band(Target, Mesh, [Material; 2], *mut c_void);
+
+// SAFETY: what it names is used by one thread.
+unsafe impl Send for Band {}
