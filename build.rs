@@ -2,7 +2,7 @@
 //!
 //! | name | vectors or assembly of | needs |
 //! |---|---|---|
-//! | `simd_x86_64` | SSE2, AVX2 and AVX-512 | feature `simd`, x86-64 |
+//! | `simd_x86_64` | SSE2, AVX2 and AVX-512 | feature `simd`, x86-64 with SSE2, which targets for kernels lack |
 //! | `simd_neon` | NEON | feature `simd`, little-endian 64-bit ARM with NEON |
 //! | `simd_wasm` | simd128 | feature `simd`, wasm32 with `-C target-feature=+simd128` |
 //! | `asm_x86_64` | the span loop | feature `asm`, x86-64 |
@@ -17,7 +17,7 @@ fn main() {
     let extends =
         |extension| var("CARGO_CFG_TARGET_FEATURE").is_ok_and(|all| all.split(',').any(|each| each == extension));
     let names = [
-        ("simd_x86_64", has("SIMD") && is("ARCH", "x86_64")),
+        ("simd_x86_64", has("SIMD") && is("ARCH", "x86_64") && extends("sse2")),
         ("simd_neon", has("SIMD") && is("ARCH", "aarch64") && is("ENDIAN", "little") && extends("neon")),
         ("simd_wasm", has("SIMD") && is("ARCH", "wasm32") && extends("simd128")),
         ("asm_x86_64", has("ASM") && is("ARCH", "x86_64")),

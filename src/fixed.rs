@@ -118,19 +118,16 @@ impl I24F8 {
     #[inline]
     pub fn round_from_f64(pixels: f64) -> Option<Self> {
         let scaled = pixels * 256.0;
-        // NaN fails this comparison.
-        if !(scaled > -2_147_483_648.0 && scaled < 2_147_483_647.0) {
+        // NaN fails these comparisons.
+        let fits = [scaled >= -2_147_483_648.5, scaled < 2_147_483_647.5];
+        if fits != [true; 2] {
             return None;
         }
-        // Truncates toward zero, in range as checked above.
-        let mut whole = scaled as i32;
-        if f64::from(whole) > scaled {
-            whole -= 1;
-        }
-        if scaled - f64::from(whole) >= 0.5 {
-            whole += 1;
-        }
-        Some(Self(whole))
+        // Truncates toward zero; what is below the least integer becomes that.
+        let whole = scaled as i32;
+        let fraction = scaled - f64::from(whole);
+        // In range as checked above.
+        Some(Self(whole + i32::from(fraction >= 0.5) - i32::from(fraction < -0.5)))
     }
 
     /// `floor(256·pixels + ½)` of an f32, exactly, like [`round_from_f64`](Self::round_from_f64).
@@ -317,6 +314,14 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused() {
+        let (least, greatest) = (-8_388_608.0, 8_388_607.996_093_75);
+        for (x, units) in [(least, i32::MIN), (least - 1.0 / 512.0, i32::MIN), (greatest, i32::MAX)] {
+            assert_eq!(I24F8::round_from_f64(x), Some(I24F8(units)), "{x}");
+            assert_eq!(I16F16::round_from_f64(x / 256.0), Some(I16F16(units)), "{x}");
+        }
+        for bad in [least - 1.0 / 256.0, greatest + 1.0 / 512.0] {
+            assert_eq!(I24F8::round_from_f64(bad), None, "{bad}");
+        }
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, f64::MAX, 8_388_608.0, -8_388_609.0] {
             assert_eq!(I24F8::round_from_f64(bad), None, "{bad}");
         }
