@@ -265,6 +265,8 @@ service:
 interrupt:
         mov al, [number]
         mov [.number], al
+        jmp short .written              ; a 486 has already fetched what follows
+.written:
         sti
         mov eax, [r_eax]
         mov ebx, [r_ebx]
