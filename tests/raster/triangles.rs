@@ -650,3 +650,43 @@ fn the_last_rows_of_the_largest_frame_are_drawn() {
     assert!(all[kept..] == band && all_depths[kept..] == band_depths);
     assert!(band[side * 39..].iter().any(|&byte| byte != 0), "nothing is in the last row");
 }
+
+/// S6: bytes of shades s and of shades 255 − s at the same corners add up to 255, or to 256 where both are halfway between
+/// two bytes.
+#[test]
+fn s6_complement_of_triangles() {
+    let mut tried = Tried::new("s6_complement_of_triangles", 100_000);
+    let mut random = Random::named("s6");
+    let (width, height, mut halves) = (320_u32, 16_u32, [0_u32; 2]);
+    while tried.more() {
+        let corners = [0, 1, 2].map(|_| (random.within(-99, 320 * 256), random.within(-99, 16 * 256)));
+        // Whole, or with few fractions, so that some sums are halfway.
+        let (grain, alone) = (random.one_of(&[1, 128, 256]), random.within(0, 1) == 0);
+        let shades = [0, 1, 2].map(|_| random.within(0, 0xFF00) / grain * grain);
+        for interpolation in [Interpolation::Gouraud88, Interpolation::Gouraud88Reseeded] {
+            let bytes = |complement: bool| {
+                let shade = |i: usize| if complement { 0xFF00 - shades[i] } else { shades[i] };
+                let vertices = [0, 1, 2].map(|i| vertex(corners[i].0, corners[i].1, shade(i), 0));
+                drawn(|background| {
+                    let mut pixels = vec![background; (width * height) as usize];
+                    let frame = Frame::new(&mut pixels, width, height, width as usize).expect("a frame");
+                    let mut raster = Raster::new(frame);
+                    match alone {
+                        true => raster.triangle(&vertices, interpolation),
+                        false => raster.triangles([(&vertices, interpolation)]),
+                    };
+                    pixels
+                })
+            };
+            for (byte, other) in bytes(false).into_iter().zip(bytes(true)) {
+                assert_eq!(byte.is_some(), other.is_some(), "{corners:?}");
+                let (Some(byte), Some(other)) = (byte, other) else { continue };
+                let sum = u32::from(byte) + u32::from(other);
+                assert!((255..=256).contains(&sum), "{byte} and {other}: {corners:?}, {shades:?}, {interpolation:?}");
+                halves[usize::from(alone)] += sum - 255;
+                tried.add(1);
+            }
+        }
+    }
+    assert!(halves.iter().all(|halves| *halves > 100), "{halves:?} are halfway");
+}

@@ -170,7 +170,6 @@ fn n7_a_highlight_inside_a_face() {
     }
 }
 
-/// A highlight splits the faces that it touches, and none on the other side of a sphere.
 /// A renderer that has lit the parts of split faces, each at its middle, lights the whole faces at theirs afterwards.
 #[test]
 fn whole_faces_are_lit_at_their_own_middles_after_split_ones() {
@@ -185,6 +184,7 @@ fn whole_faces_are_lit_at_their_own_middles_after_split_ones() {
     assert!(whole != split, "nothing was split");
 }
 
+/// A highlight splits the faces that it touches, and none on the other side of a sphere.
 #[test]
 fn faces_far_from_a_highlight_are_not_split() {
     let mut scene = lit_by(shapes::sphere(48, 24), Light::sun([-0.6, 0.3, 0.7]), 100.0);

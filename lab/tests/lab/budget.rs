@@ -259,9 +259,9 @@ fn shares_are_of_all_triangles() {
     }
 }
 
-/// Wider budgets never light more pixels individually.
+/// Wider budgets never light more triangles at their pixels.
 #[test]
-fn a_wider_budget_lights_fewer_pixels() {
+fn a_wider_budget_lights_fewer_triangles_at_pixels() {
     for (name, scene) in scenes::all() {
         let lit = BUDGETS.map(|max_error| {
             let shares = within(max_error).draw(&scene, &mut Vga::new()).expect("a legal scene").shares;

@@ -308,8 +308,12 @@ fn placed(scene: &Scene, edge: f32, genes: &mut Genes) -> Scene {
     for light in scene.lights() {
         let light = match *light {
             Light::Sun { direction, .. } => Light::sun(turn * direction),
-            Light::Lamp { position, range, .. } => Light::lamp(put(position), grown * range),
-            _ => continue,
+            Light::Lamp { position, range, cone: None, .. } => Light::lamp(put(position), grown * range),
+            Light::Lamp { position, range, cone: Some(cone), .. } => {
+                let cone = Cone { direction: turn * cone.direction, ..cone };
+                Light::spot(put(position), grown * range, cone)
+            }
+            _ => unreachable!("a light of another kind"),
         }
         .with_intensity(light.intensity())
         .with_color(light.color());

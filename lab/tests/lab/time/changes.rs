@@ -852,7 +852,7 @@ fn replace_mesh(object: &mut Object, mesh: Mesh) {
     (object.position, object.scale, object.up_axis) = (old.position, old.scale, old.up_axis);
 }
 
-/// Objects cannot be removed, so a large scene starts again with the last three.
+/// Keeps a scene small: a large one starts again with its last three objects.
 fn fewer_objects(world: &mut World) {
     let objects = world.scene.objects().to_vec();
     if objects.len() <= 5 {
