@@ -472,7 +472,7 @@ fn bytes_behind_a_band_are_not_touched() {
     assert_eq!(pixels[318..320], [9, 9]);
 }
 
-/// What another thread draws.
+/// A band of a frame, and all that another thread needs to draw into it.
 struct Band(Target, Mesh, [Material; 2], *mut c_void);
 
 // SAFETY: what it names is used by one thread.
